@@ -1,0 +1,1 @@
+"""projflow_lite: exact motion control with generative flows, small enough to read."""

@@ -1,0 +1,93 @@
+"""The Motion a user gets back: joint positions, what was asked for, and how exactly it was met."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from projflow_lite.skeleton import FPS, bone_lengths, check_positions, joint_index
+
+if TYPE_CHECKING:
+    from projflow_lite.constraints import Wish
+
+
+@dataclass(frozen=True)
+class Motion:
+    """One motion, or a batch of motions made together.
+
+    Attributes:
+        positions: ``(frames, 22, 3)`` or ``(batch, frames, 22, 3)``, metres, y up.
+        prompt: the text it was made from, or one text per motion of a batch.
+        wish: the constraints it was made to obey, if any.
+        fps: frames per second.
+
+    Raises:
+        ValueError: if the shape does not end in ``(frames, 22, 3)`` or a value is not finite.
+    """
+
+    positions: NDArray
+    prompt: str | list[str] | None = None
+    wish: Wish | None = field(default=None, repr=False)
+    fps: float = FPS
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "positions", check_positions(self.positions, "Motion"))
+
+    @property
+    def frames(self) -> int:
+        """Number of frames."""
+        return self.positions.shape[-3]
+
+    @property
+    def residual(self) -> float:
+        """Largest ``|A x - y|`` over the hard rows of the wish, metres; 0 without a wish."""
+        return 0.0 if self.wish is None else self.wish.residual(self.positions)
+
+    def joint(self, joint: str | int) -> NDArray:
+        """Path of one joint, ``(..., frames, 3)``, metres."""
+        return self.positions[..., joint_index(joint, "Motion.joint"), :]
+
+    def bone_lengths(self) -> NDArray:
+        """Length of every bone in every frame, ``(..., frames, 21)``, metres."""
+        return bone_lengths(self.positions)
+
+    def __len__(self) -> int:
+        """Number of motions: 1, or the size of the batch."""
+        return int(np.prod(self.positions.shape[:-3]))
+
+    def __iter__(self) -> Iterator[Motion]:
+        """Go through the motions of a batch one by one."""
+        batch = self.positions.reshape(-1, *self.positions.shape[-3:])
+        prompts = self.prompt if isinstance(self.prompt, list) else [self.prompt] * len(batch)
+        for positions, prompt in zip(batch, prompts, strict=True):
+            yield replace(self, positions=positions, prompt=prompt)
+
+    def save(self, path: str | Path) -> None:
+        """Write positions, prompt and frame rate to an ``.npz`` file that needs no pickle."""
+        prompts = [self.prompt] if isinstance(self.prompt, str) else (self.prompt or [])
+        np.savez_compressed(
+            path, positions=self.positions, fps=self.fps, prompt=np.array(prompts, dtype=str)
+        )
+
+    @classmethod
+    def load(cls, path: str | Path) -> Motion:
+        """Read a file written by `save`; the wish is not stored.
+
+        Raises:
+            ValueError: if the file is damaged or is not a motion; the message names it.
+        """
+        try:
+            with np.load(path, allow_pickle=False) as data:
+                positions, fps = data["positions"], float(data["fps"])
+                prompts = [str(text) for text in data["prompt"]]
+        except FileNotFoundError:
+            raise
+        except Exception as error:
+            raise ValueError(f"Motion.load: {path} is not a readable motion file ({error})") from error
+        single = prompts[0] if len(prompts) == 1 else None
+        return cls(positions, prompt=single if len(prompts) <= 1 else prompts, fps=fps)

@@ -1,0 +1,128 @@
+"""The body: 22 joints in the HumanML3D order, the bones between them, and nothing else.
+
+Positions are metres in world coordinates, y up, facing +z, left is +x, 20 frames a second.
+An array of positions always ends in ``(..., frames, joints, 3)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+
+import numpy as np
+from numpy.typing import NDArray
+
+FPS = 20
+
+JOINTS: tuple[str, ...] = (
+    "pelvis",
+    "left_hip",
+    "right_hip",
+    "spine1",
+    "left_knee",
+    "right_knee",
+    "spine2",
+    "left_ankle",
+    "right_ankle",
+    "spine3",
+    "left_foot",
+    "right_foot",
+    "neck",
+    "left_collar",
+    "right_collar",
+    "head",
+    "left_shoulder",
+    "right_shoulder",
+    "left_elbow",
+    "right_elbow",
+    "left_wrist",
+    "right_wrist",
+)
+N_JOINTS = len(JOINTS)
+
+CHAINS: tuple[tuple[int, ...], ...] = (
+    (0, 2, 5, 8, 11),
+    (0, 1, 4, 7, 10),
+    (0, 3, 6, 9, 12, 15),
+    (9, 14, 17, 19, 21),
+    (9, 13, 16, 18, 20),
+)
+
+EDGES: tuple[tuple[int, int], ...] = tuple(
+    sorted(((a, b) for chain in CHAINS for a, b in zip(chain, chain[1:], strict=False)), key=lambda e: e[1])
+)
+"""The 21 bones as ``(parent, child)``, in the order of the child."""
+
+PARENTS: tuple[int, ...] = (-1, *(parent for parent, _ in EDGES))
+"""Parent of every joint; the pelvis has none (-1). A parent always comes before its child."""
+
+MIRROR: tuple[int, ...] = tuple(
+    JOINTS.index(
+        name.replace("left", "\0").replace("right", "left").replace("\0", "right")
+    )
+    for name in JOINTS
+)
+"""The joint on the other side of the body; joints of the spine map to themselves."""
+
+
+def joint_index(joint: str | int, who: str = "joint_index") -> int:
+    """Index of one joint, from its name or from the index itself.
+
+    Args:
+        joint: a name of `JOINTS` or an integer in 0..21.
+        who: the function to name in an error message.
+
+    Raises:
+        ValueError: if there is no such joint; the message proposes the nearest name.
+    """
+    if isinstance(joint, str):
+        if joint in JOINTS:
+            return JOINTS.index(joint)
+        near = get_close_matches(joint.lower().replace(" ", "_"), JOINTS, n=1)
+        hint = f"did you mean '{near[0]}'?" if near else f"the joints are {', '.join(JOINTS)}"
+        raise ValueError(f"{who}: '{joint}' is not a joint; {hint}")
+    if isinstance(joint, bool) or not isinstance(joint, int | np.integer):
+        raise ValueError(f"{who}: a joint is a name or an integer, not {joint!r}")
+    if not 0 <= joint < N_JOINTS:
+        raise ValueError(f"{who}: joint {joint} is outside 0..{N_JOINTS - 1}")
+    return int(joint)
+
+
+def joint_indices(joints: str | int | Iterable[str | int], who: str = "joint_indices") -> list[int]:
+    """Indices of one or several joints; see `joint_index`."""
+    if isinstance(joints, str | int | np.integer):
+        joints = [joints]  # type: ignore[list-item]
+    return [joint_index(joint, who) for joint in joints]
+
+
+def bone_lengths(positions: NDArray) -> NDArray:
+    """Length of every bone in every frame.
+
+    Args:
+        positions: ``(..., frames, 22, 3)``, metres.
+
+    Returns:
+        ``(..., frames, 21)``, metres, in the order of `EDGES`.
+    """
+    parent, child = np.transpose(EDGES)
+    return np.linalg.norm(positions[..., child, :] - positions[..., parent, :], axis=-1)
+
+
+def mirror(positions: NDArray) -> NDArray:
+    """Reflect a motion left to right: x changes sign and every joint takes its partner's place."""
+    return positions[..., list(MIRROR), :] * np.array([-1.0, 1.0, 1.0], dtype=positions.dtype)
+
+
+def check_positions(positions: Sequence | NDArray, who: str = "positions") -> NDArray:
+    """Return `positions` as an array ``(..., frames, 22, 3)``, or say what is wrong with it.
+
+    Raises:
+        ValueError: if the shape does not end in ``(frames, 22, 3)`` or a value is not finite.
+    """
+    array = np.asarray(positions)
+    if array.ndim < 3 or array.shape[-2:] != (N_JOINTS, 3):
+        raise ValueError(f"{who}: expected shape (..., frames, {N_JOINTS}, 3), got {array.shape}")
+    if not np.isfinite(array).all():
+        frame, joint, axis = np.argwhere(~np.isfinite(array))[0][-3:]
+        raise ValueError(f"{who}: {JOINTS[joint]}, frame {frame}, {'xyz'[axis]} is not finite")
+    return array
