@@ -88,6 +88,8 @@ class Motion:
         except FileNotFoundError:
             raise
         except Exception as error:
-            raise ValueError(f"Motion.load: {path} is not a readable motion file ({error})") from error
+            raise ValueError(
+                f"Motion.load: {path} is not a readable motion file ({error})"
+            ) from error
         single = prompts[0] if len(prompts) == 1 else None
         return cls(positions, prompt=single if len(prompts) <= 1 else prompts, fps=fps)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +50,10 @@ CHAINS: tuple[tuple[int, ...], ...] = (
 )
 
 EDGES: tuple[tuple[int, int], ...] = tuple(
-    sorted(((a, b) for chain in CHAINS for a, b in zip(chain, chain[1:], strict=False)), key=lambda e: e[1])
+    sorted(
+        (bone for chain in CHAINS for bone in pairwise(chain)),
+        key=lambda bone: bone[1],
+    )
 )
 """The 21 bones as ``(parent, child)``, in the order of the child."""
 
@@ -57,9 +61,7 @@ PARENTS: tuple[int, ...] = (-1, *(parent for parent, _ in EDGES))
 """Parent of every joint; the pelvis has none (-1). A parent always comes before its child."""
 
 MIRROR: tuple[int, ...] = tuple(
-    JOINTS.index(
-        name.replace("left", "\0").replace("right", "left").replace("\0", "right")
-    )
+    JOINTS.index(name.replace("left", "\0").replace("right", "left").replace("\0", "right"))
     for name in JOINTS
 )
 """The joint on the other side of the body; joints of the spine map to themselves."""

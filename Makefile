@@ -1,0 +1,64 @@
+# Two commands do all the set-up: `make lab` and `make test`.
+#
+#   make lab ARGS=--no-browser       options for JupyterLab
+#   make test ARGS="-k projection"   options for pytest
+#   make lab PYTHON=python3.12       another Python (3.11 or newer)
+#   PIP_ARGS="..."                   options for pip, for example a mirror or PyTorch's CPU index
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt $(PIP_ARGS)
+NOTEBOOK ?= notebooks/00_start_here.ipynb
+
+.PHONY: lab test check browser hooks pictures clean help
+
+help:
+	@sed -n '1,7s/^# \{0,1\}//p' Makefile
+	@echo "also: make check (ruff and mypy), make hooks (for contributors), make pictures, make clean"
+
+lab: $(VENV)/.lab
+	$(BIN)/jupyter lab $(ARGS) $(NOTEBOOK)
+
+test: $(VENV)/.test browser check
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(ARGS)
+
+check: $(VENV)/.test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/nbstripout --verify notebooks/*.ipynb
+
+browser: $(VENV)/.test
+	@$(BIN)/python tests/browser/install.py
+
+# Contributors: notebooks are stripped of outputs on every commit from now on.
+hooks: $(VENV)/.test
+	$(BIN)/nbstripout --install --attributes .gitattributes
+
+pictures: $(VENV)/.test
+	$(BIN)/python -m projflow_lite.exchange.pictures
+
+clean:
+	rm -rf $(VENV) artefacts .pytest_cache .mypy_cache .ruff_cache .hypothesis
+
+$(VENV)/.made:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "projflow_lite needs Python 3.11 or newer; try: make $(MAKECMDGOALS) PYTHON=python3.12"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+# torch first and pinned: an open range could pull a CUDA build of several GB.
+$(VENV)/.torch: $(VENV)/.made constraints.txt
+	@echo "Installing torch (a minute or two, once) ..."
+	$(PIP) torch
+	@touch $@
+
+$(VENV)/.lab: $(VENV)/.torch pyproject.toml constraints.txt
+	@echo "Installing projflow_lite and JupyterLab (a minute, once) ..."
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/.test: $(VENV)/.torch pyproject.toml constraints.txt
+	@echo "Installing what the tests need (a minute, once) ..."
+	$(PIP) --editable '.[test]'
+	@touch $@ $(VENV)/.lab

@@ -1,0 +1,105 @@
+"""The shell's way in: ``projflow-lite train`` and ``projflow-lite sample``; thin on purpose."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Describe every command and option."""
+    parser = argparse.ArgumentParser(prog="projflow-lite", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+
+    train = commands.add_parser("train", help="teach the tiny flow; stop and resume at will")
+    train.add_argument("--recipe", default="classroom", help="classroom (default), shipped or smoke")
+    train.add_argument("--out", type=Path, help="folder of the run (default: runs/RECIPE)")
+    train.add_argument("--steps", type=int, help="optimiser steps, instead of the recipe's")
+    train.add_argument("--seed", type=int, default=0)
+    train.add_argument("--threads", type=int, default=1, help="processor threads (default 1)")
+    train.add_argument("--json", type=Path, help="write the closing numbers to this file")
+    train.set_defaults(run=run_train)
+
+    sample = commands.add_parser("sample", help="make one motion from a prompt")
+    sample.add_argument("prompt", help='for example "a person walks forward"')
+    sample.add_argument("--out", type=Path, default=Path("motion.npz"), help=".npz or .gif")
+    sample.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
+    sample.add_argument("--frames", type=int, default=60)
+    sample.add_argument("--steps", type=int, default=50)
+    sample.add_argument("--guidance", type=float, default=1.5)
+    sample.add_argument("--seed", type=int, default=0)
+    sample.add_argument("--json", type=Path, help="write length, time and residual to this file")
+    sample.set_defaults(run=run_sample)
+    return parser
+
+
+def run_train(options: argparse.Namespace) -> dict:
+    """Train by a recipe; an interrupted run goes on from where it was."""
+    import torch
+
+    from projflow_lite.prior.training import RECIPES, train
+
+    if options.recipe not in RECIPES:
+        raise ValueError(f"train: '{options.recipe}' is not a recipe; try {', '.join(RECIPES)}")
+    torch.set_num_threads(options.threads)
+    recipe = replace(RECIPES[options.recipe], seed=options.seed)
+    if options.steps is not None:
+        recipe = replace(recipe, steps=options.steps)
+    folder = options.out or Path("runs") / options.recipe
+    start = time.monotonic()
+    train(recipe, folder)
+    seconds = time.monotonic() - start
+    return {"checkpoint": str(folder / "prior.safetensors"), "seconds": round(seconds, 1)}
+
+
+def run_sample(options: argparse.Namespace) -> dict:
+    """Sample one motion and write it."""
+    from projflow_lite.prior import load_prior
+    from projflow_lite.samplers import sample
+
+    if options.out.suffix not in (".npz", ".gif"):
+        raise ValueError(f"sample: --out ends in .npz or .gif, not '{options.out.suffix}'")
+    prior = load_prior(options.prior)
+    start = time.monotonic()
+    motion = sample(
+        prior,
+        prompt=options.prompt,
+        frames=options.frames,
+        steps=options.steps,
+        seed=options.seed,
+        guidance=options.guidance,
+    )
+    seconds = time.monotonic() - start
+    if options.out.suffix == ".gif":
+        from projflow_lite.exchange.pictures import film
+
+        film(motion, options.out)
+    else:
+        motion.save(options.out)
+    return {"motion": str(options.out), "frames": motion.frames, "seconds": round(seconds, 3)}
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command; return the exit status."""
+    options = build_parser().parse_args(arguments)
+    try:
+        numbers = options.run(options)
+    except (ValueError, FileNotFoundError) as error:
+        print(f"projflow-lite {options.command}: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\nStopped. The same command goes on from here.", file=sys.stderr)
+        return 130
+    for name, value in numbers.items():
+        print(f"{name}: {value}")
+    if options.json:
+        options.json.write_text(json.dumps(numbers, indent=2) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

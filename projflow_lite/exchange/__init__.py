@@ -1,0 +1,1 @@
+"""Motion out of the notebook: pictures and films."""

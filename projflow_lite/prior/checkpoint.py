@@ -1,0 +1,98 @@
+"""Checkpoints without pickle: safetensors for the weights, JSON for what they mean."""
+
+from __future__ import annotations
+
+import json
+import os
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors import SafetensorError, safe_open
+from safetensors.torch import save_file
+
+from projflow_lite.prior.model import Prior
+from projflow_lite.prior.text import Vocabulary
+
+FORMAT = "projflow_lite prior 1"
+SHIPPED = "shipped.safetensors"
+
+
+def save_prior(prior: Prior, path: str | Path, dtype: torch.dtype = torch.float16) -> None:
+    """Write a prior to one file, by default in half precision.
+
+    Args:
+        prior: what to save.
+        path: where; replaced in one step, so that an interruption never leaves half a file.
+        dtype: of the stored weights; they are used in float32.
+    """
+    tensors = {
+        name: value.detach().cpu().to(torch.float32 if name == "mean" else dtype).contiguous()
+        for name, value in prior.state_dict().items()
+    }
+    about = {
+        "words": prior.vocabulary.words,
+        "noise_std": prior.noise_std,
+        "lengths": prior.lengths,
+        "network": prior.sizes,
+        "recipe": prior.recipe,
+    }
+    write(tensors, {"format": FORMAT, "prior": json.dumps(about)}, path)
+
+
+def load_prior(path: str | Path | None = None) -> Prior:
+    """Load a prior; without a path, the one shipped in the package.
+
+    Raises:
+        FileNotFoundError: if there is no such file.
+        ValueError: if the file is damaged or is not a prior; the message names it.
+    """
+    if path is None:
+        with as_file(files("projflow_lite.prior") / SHIPPED) as shipped:
+            return load_prior(shipped)
+    tensors, metadata = read(path)
+    if metadata.get("format") != FORMAT:
+        raise ValueError(f"load_prior: {path} is not a projflow_lite prior")
+    about = json.loads(metadata["prior"])
+    prior = Prior(
+        Vocabulary(about["words"]),
+        tensors["mean"],
+        about["noise_std"],
+        tuple(about["lengths"]),
+        about["network"],
+        about["recipe"],
+    )
+    try:
+        prior.load_state_dict({name: value.float() for name, value in tensors.items()})
+    except RuntimeError as error:
+        reason = str(error).splitlines()[-1].strip()
+        raise ValueError(
+            f"load_prior: {path} does not fit its own description: {reason}"
+        ) from error
+    return prior.eval().requires_grad_(False)
+
+
+def write(tensors: dict[str, torch.Tensor], metadata: dict[str, str], path: str | Path) -> None:
+    """Write tensors and text to a file that appears whole or not at all."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    half_written = path.with_name(path.name + ".part")
+    save_file(tensors, half_written, metadata)
+    os.replace(half_written, path)
+
+
+def read(path: str | Path) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:
+    """Read a file written by `write`.
+
+    Raises:
+        FileNotFoundError: if there is no such file.
+        ValueError: if it is damaged; the message names it.
+    """
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"there is no checkpoint at {path}")
+    try:
+        with safe_open(path, framework="pt") as file:
+            return {name: file.get_tensor(name) for name in file.keys()}, file.metadata() or {}  # noqa: SIM118
+    except (SafetensorError, OSError, ValueError) as error:
+        raise ValueError(f"{path} is damaged or is not a checkpoint ({error})") from error

@@ -1,0 +1,251 @@
+r"""Teach the tiny flow: from a seed, with a log, losing a minute at most when interrupted.
+
+The network predicts :math:`x_1`, so the flow-matching loss (ProjFlow eq. 3) becomes
+
+.. math:: \lVert v_\theta - (x_1 - x_0) \rVert^2
+          = \frac{\lVert \hat x_1 - x_1 \rVert^2}{(1 - t)^2}.
+
+Everything random in step k comes from the seed and k alone: a run that was stopped and resumed
+makes the same steps as one that was not.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import torch
+from tqdm.auto import tqdm
+
+from data_synth import make_clips
+from projflow_lite.prior.checkpoint import load_prior, read, save_prior, write
+from projflow_lite.prior.model import Prior
+from projflow_lite.prior.network import PARENTS, Network
+from projflow_lite.prior.text import Vocabulary
+
+CHUNK = 64
+"""Training steps that share one call of the motion generator, and one length of motion."""
+
+SAVE_EVERY = 60.0
+"""Seconds between two checkpoints."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """Everything that decides what a training run produces.
+
+    Attributes:
+        steps: optimiser steps.
+        batch: motions in a step.
+        learning_rate: highest learning rate; it warms up, stays, and falls to 0 over `decay`.
+        decay: last share of the steps, over which the learning rate falls.
+        prompt_dropout: share of motions shown without their prompt, for guidance.
+        ema: decay of the average of the weights that is saved.
+        lengths: frames; each chunk of steps draws one.
+        widths: of the network, see `Network`.
+        seed: of everything.
+    """
+
+    steps: int
+    batch: int = 48
+    learning_rate: float = 1e-3
+    decay: float = 0.5
+    prompt_dropout: float = 0.1
+    ema: float = 0.999
+    lengths: tuple[int, ...] = (40, 60, 60, 80, 100)
+    widths: tuple[int, int, int] = (96, 192, 256)
+    seed: int = 0
+
+
+RECIPES = {
+    "smoke": Recipe(steps=20, batch=8, widths=(16, 24, 32)),
+    "classroom": Recipe(steps=2000),
+    "shipped": Recipe(steps=12000),
+}
+
+
+def loss_of(
+    network: Network, u1: torch.Tensor, ids: torch.Tensor, random: torch.Generator
+) -> torch.Tensor:
+    """Flow-matching loss of a batch of motions.
+
+    Besides positions, the error of velocities and of bone vectors is counted. Each is a quadratic
+    form of the same error, so the best prediction stays the conditional mean.
+
+    Args:
+        network: what is trained.
+        u1: ``(batch, frames, 22, 3)`` clean motions, centred and scaled.
+        ids: ``(batch, words)`` their prompts.
+        random: where flow times and noise are drawn from.
+    """
+    # Limbs move by decimetres, the noise by a metre: most is decided late, so t leans to 1.
+    t = torch.sigmoid(torch.randn(len(u1), generator=random) * 1.2 + 0.6)
+    u0 = torch.randn(u1.shape, generator=random)
+    share = t.view(-1, 1, 1, 1)
+    error = network((1 - share) * u0 + share * u1, t, ids) - u1
+    bones = error[:, :, 1:] - error[:, :, list(PARENTS[1:])]
+    quadratic = (
+        error.square().mean((1, 2, 3))
+        + 2 * error.diff(dim=1).square().mean((1, 2, 3))
+        + 2 * bones.square().mean((1, 2, 3))
+    )
+    return (quadratic / (1 - t).clamp(min=0.03).square()).mean()
+
+
+def learning_rate(recipe: Recipe, step: int) -> float:
+    """Warm up over 200 steps, stay, then fall along a half cosine to 0."""
+    warm = min(1.0, (step + 1) / min(200, recipe.steps))
+    begin = recipe.steps * (1 - recipe.decay)
+    fall = max(0.0, (step - begin) / max(1.0, recipe.steps - begin))
+    return recipe.learning_rate * warm * 0.5 * (1 + math.cos(math.pi * fall))
+
+
+class Trainer:
+    """A training run: its state, one step of it, and how it is stored.
+
+    Args:
+        recipe: what to train.
+    """
+
+    def __init__(self, recipe: Recipe) -> None:
+        self.recipe, self.step = recipe, 0
+        torch.manual_seed(recipe.seed)
+        look = make_clips(2048, frames=60, seed=recipe.seed)
+        positions = torch.as_tensor(look.positions)
+        mean = positions.mean((0, 1))
+        self.prior = Prior(
+            Vocabulary.of(look.captions),
+            mean,
+            float((positions - mean).square().mean().sqrt()),
+            (min(recipe.lengths), max(recipe.lengths)),
+            {"widths": list(recipe.widths)},
+            asdict(recipe),
+        )
+        self.network = self.prior.network
+        self.average = {k: v.detach().clone() for k, v in self.network.named_parameters()}
+        self.optimiser = torch.optim.AdamW(self.network.parameters(), weight_decay=0.01)
+        self.chunk: tuple[int, torch.Tensor, torch.Tensor] | None = None
+
+    def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
+        """Motions and prompts of the current step."""
+        number, place = divmod(self.step, CHUNK)
+        if self.chunk is None or self.chunk[0] != number:
+            random = np.random.default_rng([self.recipe.seed, number])
+            clips = make_clips(
+                self.recipe.batch * CHUNK,
+                frames=int(random.choice(self.recipe.lengths)),
+                seed=int(random.integers(2**31)),
+            )
+            u1 = (torch.as_tensor(clips.positions) - self.prior.mean) / self.prior.noise_std
+            dropped = random.random(len(clips.captions)) < self.recipe.prompt_dropout
+            prompts = [None if d else c for c, d in zip(clips.captions, dropped, strict=True)]
+            self.chunk = number, u1, self.prior.vocabulary.encode(prompts)
+        part = slice(place * self.recipe.batch, (place + 1) * self.recipe.batch)
+        return self.chunk[1][part], self.chunk[2][part]
+
+    def advance(self) -> float:
+        """Make one step; return its loss."""
+        random = torch.Generator().manual_seed(self.recipe.seed * 1_000_003 + self.step)
+        loss = loss_of(self.network, *self.batch(), random)
+        self.optimiser.zero_grad()
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
+        for group in self.optimiser.param_groups:
+            group["lr"] = learning_rate(self.recipe, self.step)
+        self.optimiser.step()
+        self.step += 1
+        keep = min(self.recipe.ema, (1 + self.step) / (10 + self.step))
+        for name, weight in self.network.named_parameters():
+            self.average[name].lerp_(weight.detach(), 1 - keep)
+        return float(loss.detach())
+
+    def save(self, path: Path) -> None:
+        """Store the run, so that `resume` goes on exactly from here."""
+        moments = self.optimiser.state_dict()["state"]
+        tensors = {f"average.{k}": v for k, v in self.average.items()}
+        tensors |= {f"weight.{k}": v.detach() for k, v in self.network.named_parameters()}
+        tensors |= {f"moment.{i}.{k}": v for i, s in moments.items() for k, v in s.items()}
+        about = {"step": str(self.step), "recipe": json.dumps(asdict(self.recipe))}
+        write({k: v.contiguous() for k, v in tensors.items()}, about, path)
+
+    def resume(self, path: Path) -> None:
+        """Go on from a stored run.
+
+        Raises:
+            ValueError: if the file is damaged or belongs to another recipe.
+        """
+        tensors, about = read(path)
+        if about.get("recipe") != json.dumps(asdict(self.recipe)):
+            raise ValueError(f"train: {path} was made by another recipe; choose another folder")
+        self.network.load_state_dict(part_of(tensors, "weight."), strict=False)
+        self.average = part_of(tensors, "average.")
+        state: dict[int, dict[str, torch.Tensor]] = {}
+        for name, value in part_of(tensors, "moment.").items():
+            number, key = name.split(".")
+            state.setdefault(int(number), {})[key] = value
+        self.optimiser.load_state_dict(self.optimiser.state_dict() | {"state": state})
+        self.step = int(about["step"])
+
+    def result(self) -> Prior:
+        """The prior with the averaged weights."""
+        self.prior.network.load_state_dict(self.average, strict=False)
+        return self.prior.eval().requires_grad_(False)
+
+
+def part_of(tensors: dict[str, torch.Tensor], prefix: str) -> dict[str, torch.Tensor]:
+    """The tensors whose name begins with `prefix`, without it."""
+    return {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
+
+
+def train(
+    recipe: Recipe,
+    folder: str | Path,
+    progress: bool = True,
+    on_step: Callable[[int, float], None] | None = None,
+) -> Prior:
+    """Train a prior, or go on with a run that was interrupted.
+
+    Args:
+        recipe: what to train.
+        folder: where ``run.safetensors`` (to resume), ``loss.jsonl`` (the log) and, at the end,
+            ``prior.safetensors`` are written.
+        progress: show a progress bar.
+        on_step: called with the number of steps made and the loss of the last one.
+
+    Returns:
+        The trained prior.
+
+    Raises:
+        ValueError: if the folder holds a damaged run, or one of another recipe.
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    trainer, run, saved = Trainer(recipe), folder / "run.safetensors", time.monotonic()
+    if run.exists():
+        trainer.resume(run)
+    bar = tqdm(total=recipe.steps, initial=trainer.step, disable=not progress, unit="step")
+    smooth = None
+    try:
+        while trainer.step < recipe.steps:
+            loss = trainer.advance()
+            smooth = loss if smooth is None else 0.98 * smooth + 0.02 * loss
+            bar.update()
+            if on_step:
+                on_step(trainer.step, loss)
+            if trainer.step % 50 == 0:
+                bar.set_postfix(loss=f"{smooth:.4f}")
+                with (folder / "loss.jsonl").open("a") as log:
+                    log.write(json.dumps({"step": trainer.step, "loss": smooth}) + "\n")
+            if time.monotonic() - saved > SAVE_EVERY:
+                trainer.save(run)
+                saved = time.monotonic()
+    finally:
+        bar.close()
+        trainer.save(run)
+    save_prior(trainer.result(), folder / "prior.safetensors")
+    return load_prior(folder / "prior.safetensors")

@@ -1,0 +1,240 @@
+r"""The exact solve of ProjFlow eq. 7, fast enough to drag.
+
+.. math:: \hat x_1^* = \hat x_1 + R^{-1} A^\top (A R^{-1} A^\top + \Sigma)^{-1} (y - A \hat x_1)
+
+The metric couples joints, never frames or axes: :math:`R^{-1} = I_N \otimes R_J^{-1} \otimes I_3`.
+So :math:`S = A R^{-1} A^\top + \Sigma` falls apart into small blocks of rows that share a frame and
+an axis. Each block is factorised once; what is left of every later projection is one sparse product
+with the gain :math:`G = R^{-1} A^\top S^{-1}`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+from numpy.typing import ArrayLike, NDArray
+from scipy import linalg, sparse
+from scipy.sparse.csgraph import connected_components
+
+from projflow_lite.constraints import Rows, describe_row, is_coordinate
+from projflow_lite.equations import joint_metric, kinematic_laplacian
+from projflow_lite.skeleton import EDGES, N_JOINTS
+
+RANK_TOLERANCE = 1e-9
+"""A row is redundant when the rows before it leave less than this share of its variance."""
+
+AGREEMENT = 1e-6
+"""Redundant rows may disagree by this many metres: rounding of float32 targets, not two wishes."""
+
+
+def kinematic_joint_metric(w_kin: float = 10.0, ridge: float = 1.0) -> NDArray:
+    r"""The skeleton's metric on one frame and axis, :math:`R_J = w L + \lambda I` (eq. 50)."""
+    return joint_metric(kinematic_laplacian(EDGES, N_JOINTS), w_kin, ridge)
+
+
+class Projector:
+    """Projection onto a set of rows, under a metric on the joints (ProjFlow eq. 6-8).
+
+    Args:
+        rows: what must hold; see `Wish.rows`.
+        metric: "kinematic" (w = 10, ridge = 1), "euclidean", or any positive definite
+            ``(22, 22)`` joint metric.
+        dtype: of the motions that will be projected; the factorisation itself is float64.
+        device: where they live.
+
+    Raises:
+        ValueError: if rows contradict each other, are not finite, or the metric is not positive
+            definite.
+    """
+
+    def __init__(
+        self,
+        rows: Rows,
+        metric: str | ArrayLike = "kinematic",
+        dtype: torch.dtype = torch.float32,
+        device: str | torch.device = "cpu",
+    ) -> None:
+        check_rows(rows)
+        covariance = np.linalg.inv(check_metric(metric))
+        keep = independent_rows(rows, covariance)
+        rows = Rows(rows.A[keep], rows.y[keep], rows.variance[keep])
+        A, y, variance = rows
+        self.frames = A.shape[1] // (N_JOINTS * 3)
+        hard = variance == 0
+        self.A = SparseMap(A, dtype, device)
+        self.gain = SparseMap(gain_matrix(rows, covariance), dtype, device)
+        self.y = torch.as_tensor(y, dtype=dtype, device=device)
+        self.hard = torch.as_tensor(hard, dtype=dtype, device=device)
+        exact = hard & is_coordinate(A)
+        self.pinned = torch.as_tensor(A.indices[A.indptr[:-1][exact]], device=device).long()
+        self.pinned_to = torch.as_tensor(y[exact], dtype=dtype, device=device)
+
+    def project(self, x1_hat: torch.Tensor) -> torch.Tensor:
+        """Move a motion, or a batch, the shortest way onto the rows.
+
+        Args:
+            x1_hat: ``(..., frames, 22, 3)`` metres.
+
+        Returns:
+            The same shape. Pinned coordinates are bit-exact; gradients flow through.
+
+        Raises:
+            ValueError: if the shape does not end in ``(frames, 22, 3)``.
+        """
+        if x1_hat.shape[-3:] != (self.frames, N_JOINTS, 3):
+            raise ValueError(
+                f"Projector: expected shape (..., {self.frames}, {N_JOINTS}, 3), "
+                f"got {tuple(x1_hat.shape)}"
+            )
+        x = x1_hat.reshape(-1, self.frames * N_JOINTS * 3)
+        x = x + self.gain(self.y - self.A(x))
+        # One step of iterative refinement: what rounding left over on the hard rows, removed.
+        x = x + self.gain((self.y - self.A(x)) * self.hard)
+        # The exact value is known, so the last bit need not be left to arithmetic.
+        x = x.index_copy(-1, self.pinned, self.pinned_to.expand(len(x), -1))
+        return x.reshape(x1_hat.shape)
+
+
+class SparseMap:
+    """A sparse matrix applied to the last dimension of a dense batch, with gradients.
+
+    Written as gather, multiply, scatter-add because torch's own sparse product takes only one
+    layout per device; three lines serve them all.
+    """
+
+    def __init__(
+        self, matrix: sparse.spmatrix, dtype: torch.dtype, device: str | torch.device
+    ) -> None:
+        entries = sparse.coo_matrix(matrix)
+        self.shape = entries.shape
+        self.row = torch.as_tensor(entries.row, device=device).long()
+        self.column = torch.as_tensor(entries.col, device=device).long()
+        self.value = torch.as_tensor(entries.data, dtype=dtype, device=device)
+
+    def __call__(self, x: torch.Tensor) -> torch.Tensor:
+        """Return ``matrix @ x`` for every vector of the batch ``(batch, columns)``."""
+        products = x[:, self.column] * self.value
+        return x.new_zeros(len(x), self.shape[0]).index_add(1, self.row, products)
+
+
+def blocks_of_rows(A: sparse.csr_matrix) -> list[NDArray]:
+    """Split rows into groups that share no frame and axis; each group can be solved alone.
+
+    Returns:
+        One array ``(blocks, size)`` of row indices for every size of group that occurs.
+    """
+    if A.shape[0] == 0:
+        return []
+    cell = A.indices // (3 * N_JOINTS) * 3 + A.indices % 3
+    touches = sparse.csr_matrix((np.ones(A.nnz), cell, A.indptr), (A.shape[0], A.shape[1]))
+    _, label = connected_components(touches @ touches.T, directed=False)
+    order, sizes = np.argsort(label, kind="stable"), np.bincount(label)
+    blocks = np.split(order, np.cumsum(sizes)[:-1])
+    return [np.array([k for k in blocks if len(k) == size]) for size in np.unique(sizes)]
+
+
+def metric_times_rows(A: sparse.csr_matrix, covariance: NDArray) -> sparse.csr_matrix:
+    r""":math:`R^{-1} A^\top`, ``(d, m)``: how every coordinate moves when one row is pulled."""
+    frames = A.shape[1] // (N_JOINTS * 3)
+    spread = sparse.kron(sparse.eye(frames), sparse.kron(covariance, sparse.eye(3)), format="csr")
+    return (spread @ A.T).tocsr()
+
+
+def observed_covariance(rows: Rows, covariance: NDArray) -> sparse.csr_matrix:
+    r""":math:`S = A R^{-1} A^\top + \Sigma`, ``(m, m)``."""
+    return (rows.A @ metric_times_rows(rows.A, covariance) + sparse.diags(rows.variance)).tocsr()
+
+
+def dense_blocks(S: sparse.csr_matrix, block: NDArray) -> NDArray:
+    """Cut blocks of equal size out of ``S``: ``(blocks, size)`` to ``(blocks, size, size)``."""
+    size = block.shape[1]
+    entries = S[np.repeat(block, size, axis=1).ravel(), np.tile(block, size).ravel()]
+    return np.asarray(entries).reshape(-1, size, size)
+
+
+def gain_matrix(rows: Rows, covariance: NDArray) -> sparse.csr_matrix:
+    r"""The gain :math:`G = R^{-1} A^\top (A R^{-1} A^\top + \Sigma)^{-1}`, ``(d, m)``."""
+    S = observed_covariance(rows, covariance)
+    row, column, value = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
+    for block in blocks_of_rows(rows.A):
+        size = block.shape[1]
+        row.append(np.repeat(block, size, axis=1).ravel())
+        column.append(np.tile(block, size).ravel())
+        value.append(np.linalg.inv(dense_blocks(S, block)).ravel())
+    index = (np.concatenate(row), np.concatenate(column))
+    inverse = sparse.csr_matrix((np.concatenate(value), index), S.shape)
+    return metric_times_rows(rows.A, covariance) @ inverse
+
+
+def independent_rows(rows: Rows, covariance: NDArray) -> NDArray:
+    """Indices of the rows to keep: all but the hard rows that others already imply.
+
+    Raises:
+        ValueError: if a hard row contradicts the others.
+    """
+    S = observed_covariance(rows, covariance)
+    keep = np.ones(len(rows.y), dtype=bool)
+    for block in blocks_of_rows(rows.A):
+        dense = dense_blocks(S, block)
+        scale = 1 / np.sqrt(np.diagonal(dense, axis1=1, axis2=2))
+        correlation = dense * scale[:, :, None] * scale[:, None, :]
+        singular = np.linalg.eigvalsh(correlation)[:, 0] < RANK_TOLERANCE
+        for k in np.flatnonzero(singular):
+            _, pivot, rank, _ = linalg.lapack.dpstrf(correlation[k], tol=RANK_TOLERANCE, lower=1)
+            kept, dropped = np.sort(pivot[:rank] - 1), np.sort(pivot[rank:] - 1)
+            implied = linalg.solve(dense[k][np.ix_(kept, kept)], dense[k][np.ix_(kept, dropped)]).T
+            clash = np.abs(implied @ rows.y[block[k, kept]] - rows.y[block[k, dropped]]) > AGREEMENT
+            if clash.any():
+                first = np.argmax(clash)
+                raise ValueError(
+                    explain_clash(rows, block[k, dropped[first]], block[k, kept], implied[first])
+                )
+            keep[block[k, dropped]] = False
+    return np.flatnonzero(keep)
+
+
+def explain_clash(rows: Rows, row: int, others: NDArray, implied: NDArray) -> str:
+    """One line that names two rows which cannot both hold, or the row that the others rule out."""
+    first, second = sorted((row, others[np.argmax(np.abs(implied))]))
+    where = describe_row(rows.A, first)
+    if where == describe_row(rows.A, second):
+        return (
+            f"rows {first} and {second} contradict each other: {where} = "
+            f"{rows.y[first]:.6g} and {rows.y[second]:.6g}"
+        )
+    return (
+        f"row {row} contradicts the other rows: {describe_row(rows.A, row)} = "
+        f"{rows.y[row]:.6g}, but they imply {implied @ rows.y[others]:.6g}"
+    )
+
+
+def check_rows(rows: Rows) -> None:
+    """Refuse rows whose shapes do not match, that are not finite, or that say nothing."""
+    A, y, variance = rows
+    m = A.shape[0]
+    if y.shape != (m,) or variance.shape != (m,):
+        raise ValueError(f"Projector: {m} rows, but y {y.shape} and variance {variance.shape}")
+    if A.shape[1] % (N_JOINTS * 3):
+        raise ValueError(f"Projector: A has {A.shape[1]} columns, not a multiple of {N_JOINTS * 3}")
+    if not (np.isfinite(A.data).all() and np.isfinite(y).all() and np.isfinite(variance).all()):
+        raise ValueError("Projector: A, y and variance must be finite")
+    if (variance < 0).any():
+        raise ValueError(f"Projector: row {np.argmax(variance < 0)} has a negative variance")
+    empty = np.flatnonzero(abs(A).sum(axis=1) == 0)
+    if len(empty):
+        raise ValueError(f"Projector: row {empty[0]} of A is zero")
+
+
+def check_metric(metric: str | ArrayLike) -> NDArray:
+    """The joint metric as a positive definite ``(22, 22)`` array, or an error that says why not."""
+    if isinstance(metric, str):
+        known = {"kinematic": kinematic_joint_metric(), "euclidean": np.eye(N_JOINTS)}
+        if metric not in known:
+            raise ValueError(f"Projector: metric is one of {', '.join(known)}, not '{metric}'")
+        return known[metric]
+    R_J = np.asarray(metric, dtype=np.float64)
+    if R_J.shape != (N_JOINTS, N_JOINTS) or not np.allclose(R_J, R_J.T):
+        raise ValueError(f"Projector: a metric is a symmetric ({N_JOINTS}, {N_JOINTS}) matrix")
+    if np.linalg.eigvalsh(R_J)[0] <= 0:
+        raise ValueError("Projector: the metric is not positive definite")
+    return R_J

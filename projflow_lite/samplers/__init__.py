@@ -1,0 +1,97 @@
+"""From a prior and a wish to a motion: one door, one file per method behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import torch
+from numpy.typing import ArrayLike
+
+from projflow_lite.constraints import Wish
+from projflow_lite.motion import Motion
+from projflow_lite.projection import Projector
+from projflow_lite.samplers.euler import euler
+from projflow_lite.samplers.guidance import guided
+from projflow_lite.samplers.projflow import Step, Velocity, projflow
+from projflow_lite.skeleton import N_JOINTS
+
+__all__ = ["METHODS", "Step", "euler", "guided", "projflow", "sample"]
+
+METHODS = {"projflow": projflow}
+"""Methods that obey a wish, by the name that `sample` takes."""
+
+
+def sample(
+    prior: Velocity,
+    wish: Wish | None = None,
+    prompt: str | Sequence[str | None] | None = None,
+    frames: int = 60,
+    steps: int = 50,
+    seed: int = 0,
+    method: str = "projflow",
+    *,
+    batch: int | None = None,
+    guidance: float = 1.5,
+    metric: str | ArrayLike = "kinematic",
+    dtype: torch.dtype = torch.float32,
+    **options: Any,
+) -> Motion:
+    """Generate a motion that obeys a wish exactly.
+
+    Args:
+        prior: a `Prior`, or any callable ``velocity(x_t, t, text)`` on
+            ``(batch, frames, 22, 3)``; its noise has the standard deviation
+            ``prior.noise_std`` metres, or 1 if it has no such attribute.
+        wish: what must hold; None for an unconstrained sample.
+        prompt: what the motion should be; one text, or one for each motion of the batch.
+        frames: length of the motion, at 20 frames a second.
+        steps: sampling steps.
+        seed: the same seed gives the same motion.
+        method: a name of `METHODS`.
+        batch: how many motions; None for one, without a batch dimension.
+        guidance: how strongly the prompt is followed, see `guided`.
+        metric: of the projection, see `Projector`.
+        dtype: of the sampler's arithmetic: torch.float32 or torch.float64.
+        options: further arguments of the method, see its file in ``samplers/``.
+
+    Raises:
+        ValueError: for a wish that does not fit the motion or contradicts itself, an unknown
+            method, or numbers that make no sense.
+    """
+    check_numbers(frames, steps, guidance, batch)
+    if method not in METHODS:
+        raise ValueError(f"sample: method is one of {', '.join(METHODS)}, not '{method}'")
+    if wish is not None and not isinstance(wish, Wish):
+        raise ValueError(
+            f"sample: wish is made by pin, offset or loop, not a {type(wish).__name__}"
+        )
+    if hasattr(prior, "check_frames"):
+        prior.check_frames(frames)
+    projector = None if wish is None else Projector(wish.rows(frames), metric, dtype)
+    generator = torch.Generator().manual_seed(seed)
+    noise_std = getattr(prior, "noise_std", 1.0)
+    shape = (batch or 1, frames, N_JOINTS, 3)
+    x0 = noise_std * torch.randn(shape, generator=generator, dtype=dtype)
+    times = torch.linspace(0, 1, steps + 1, dtype=torch.float64).tolist()
+    velocity = guided(prior, guidance)
+    with torch.inference_mode():
+        if projector is None:
+            x1 = euler(velocity, x0, times, prompt)
+        else:
+            x1 = METHODS[method](
+                velocity, projector.project, x0, times, generator, prompt,
+                noise_std=noise_std, **options,
+            )  # fmt: skip
+    positions = x1.numpy() if batch is not None else x1[0].numpy()
+    texts = prompt if prompt is None or isinstance(prompt, str) else list(prompt)
+    return Motion(positions, texts, wish)  # type: ignore[arg-type]
+
+
+def check_numbers(frames: int, steps: int, guidance: float, batch: int | None) -> None:
+    """Refuse a count below 1, or a guidance that is not a number."""
+    for name, value in (("frames", frames), ("steps", steps), ("batch", batch)):
+        if value is not None and (not isinstance(value, int) or value < 1):
+            raise ValueError(f"sample: {name} is a whole number of at least 1, not {value!r}")
+    if not -100 < guidance < 100:
+        raise ValueError(f"sample: guidance is a number, usually 0 to 5, not {guidance!r}")

@@ -1,0 +1,74 @@
+r"""ProjFlow: at every step, predict the clean motion, project it onto the wish, and noise it again.
+
+The whole method is the loop below (ProjFlow eq. 5-10). It works with any velocity field.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
+
+import torch
+
+from projflow_lite.prior.model import Text
+
+Velocity = Callable[[torch.Tensor, float, Text], torch.Tensor]
+
+
+class Step(NamedTuple):
+    """What a callback sees of one sampling step; tensors are ``(batch, frames, 22, 3)``, metres."""
+
+    t: float
+    t_next: float
+    x_t: torch.Tensor
+    x1_hat: torch.Tensor
+    x1_projected: torch.Tensor
+
+
+def projflow(
+    velocity: Velocity,
+    project: Callable[[torch.Tensor], torch.Tensor],
+    x0: torch.Tensor,
+    times: Sequence[float],
+    generator: torch.Generator,
+    text: Text = None,
+    noise: str = "implied",
+    eta: Callable[[float], float] | float | None = None,
+    noise_std: float = 1.0,
+    callback: Callable[[Step], None] | None = None,
+) -> torch.Tensor:
+    r"""Sample motions that obey a linear wish exactly.
+
+    Args:
+        velocity: the flow, ``velocity(x_t, t, text)`` on ``(batch, frames, 22, 3)``.
+        project: moves a clean motion onto the wish, see `Projector.project`.
+        x0: noise to begin with, ``(batch, frames, 22, 3)``, metres.
+        times: flow times from 0 to 1, rising.
+        generator: where fresh noise is drawn from.
+        text: prompts.
+        noise: which noise eq. 9 mixes: "original", the :math:`x_0` of the start, as printed; or
+            "implied", what the state and the velocity say it was, :math:`x_t - t v`.
+        eta: share of fresh noise: a number, or a function of the next time. By default
+            :math:`\eta = 1 - \sigma_{t + \Delta t}`, which is the next time itself.
+        noise_std: standard deviation of the flow's noise, metres.
+        callback: called with every `Step`.
+
+    Returns:
+        ``(batch, frames, 22, 3)`` metres; its last projection is not followed by anything.
+
+    Source: ProjFlow eq. 5-10 and Table 5.
+    """
+    share = eta if callable(eta) else (lambda t_next: t_next if eta is None else eta)
+    x_t = x0
+    for t, t_next in itertools.pairwise(times):
+        v = velocity(x_t, t, text)
+        x1_hat = x_t + (1 - t) * v  # eq. 5
+        x1 = project(x1_hat)  # eq. 6-8
+        source = x0 if noise == "original" else x_t - t * v
+        fresh = noise_std * torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
+        mixed = (1 - share(t_next)) ** 0.5 * source + share(t_next) ** 0.5 * fresh  # eq. 9
+        if callback:
+            callback(Step(t, t_next, x_t, x1_hat, x1))
+        x_t = t_next * x1 + (1 - t_next) * mixed  # eq. 10
+    return x_t
