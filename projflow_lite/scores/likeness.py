@@ -1,0 +1,57 @@
+"""Is a set of motions like another set?"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import linalg
+
+from projflow_lite.skeleton import FPS, check_positions, joint_indices
+
+ENDS = joint_indices(["pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist"])
+
+
+def frechet_distance(a: ArrayLike, b: ArrayLike) -> float:
+    r"""Fréchet distance between Gaussians fitted to two sets of features.
+
+    .. math:: \lVert \mu_a - \mu_b \rVert^2
+              + \operatorname{tr}\left(C_a + C_b - 2 (C_a C_b)^{1/2}\right)
+
+    Args:
+        a: ``(samples, features)``.
+        b: ``(other samples, features)``.
+
+    Raises:
+        ValueError: if the features differ in number or there are fewer than two samples.
+    """
+    a, b = np.asarray(a, float), np.asarray(b, float)
+    if a.ndim != 2 or b.ndim != 2 or a.shape[1] != b.shape[1] or min(len(a), len(b)) < 2:
+        raise ValueError(
+            f"frechet_distance: two sets of at least two feature vectors of one length, "
+            f"not {a.shape} and {b.shape}"
+        )
+    C_a, C_b = np.atleast_2d(np.cov(a.T)), np.atleast_2d(np.cov(b.T))
+    # tr (C_a C_b)^1/2 through a symmetric matrix, which has a real square root even if singular.
+    root = linalg.sqrtm(C_a).real
+    cross = np.sqrt(np.clip(np.linalg.eigvalsh(root @ C_b @ root), 0, None)).sum()
+    shift = a.mean(0) - b.mean(0)
+    return float(shift @ shift + np.trace(C_a) + np.trace(C_b) - 2 * cross)
+
+
+def kinetic_features(positions: NDArray, fps: float = FPS) -> NDArray:
+    """Log of the root-mean-square speed and acceleration of pelvis, feet, head and wrists.
+
+    A distance on these features sees spikes and jitter, which an embedding of poses hardly does.
+
+    Args:
+        positions: ``(..., frames, 22, 3)``, metres.
+        fps: frames per second.
+
+    Returns:
+        ``(..., 12)``.
+    """
+    ends = check_positions(positions, "kinetic_features")[..., ENDS, :]
+    speed = np.square(np.diff(ends, axis=-3) * fps).sum(-1).mean(-2)
+    acceleration = np.square(np.diff(ends, 2, axis=-3) * fps**2).sum(-1).mean(-2)
+    # The floor of 1 mm/s keeps a foot that never moves finite.
+    return 0.5 * np.log(np.concatenate([speed, acceleration], axis=-1) + 1e-6)
