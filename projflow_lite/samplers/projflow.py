@@ -57,9 +57,13 @@ def projflow(
     Returns:
         ``(batch, frames, 22, 3)`` metres; its last projection is not followed by anything.
 
+    Raises:
+        ValueError: for another `noise`, or an `eta` outside 0..1.
+
     Source: ProjFlow eq. 5-10 and Table 5.
     """
-    share = eta if callable(eta) else (lambda t_next: t_next if eta is None else eta)
+    if noise not in ("original", "implied"):
+        raise ValueError(f"projflow: noise is 'original' or 'implied', not '{noise}'")
     x_t = x0
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)
@@ -67,8 +71,17 @@ def projflow(
         x1 = project(x1_hat)  # eq. 6-8
         source = x0 if noise == "original" else x_t - t * v
         fresh = noise_std * torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
-        mixed = (1 - share(t_next)) ** 0.5 * source + share(t_next) ** 0.5 * fresh  # eq. 9
+        share = fresh_share(eta, t_next)
+        mixed = (1 - share) ** 0.5 * source + share**0.5 * fresh  # eq. 9
         if callback:
             callback(Step(t, t_next, x_t, x1_hat, x1))
         x_t = t_next * x1 + (1 - t_next) * mixed  # eq. 10
     return x_t
+
+
+def fresh_share(eta: Callable[[float], float] | float | None, t_next: float) -> float:
+    """The share of fresh noise at one step; by default the next time itself."""
+    share = t_next if eta is None else eta(t_next) if callable(eta) else eta
+    if not 0 <= share <= 1:
+        raise ValueError(f"projflow: eta is a share of 0 to 1, not {share}")
+    return share

@@ -1,0 +1,163 @@
+"""The tiny flow: what it accepts, what it stores, and that training is exact to the step."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+import projflow_lite as pf
+from projflow_lite.prior.network import bones_to_positions
+from projflow_lite.prior.text import TextEncoder, Vocabulary
+from projflow_lite.prior.training import RECIPES, Trainer, loss_of, train
+from projflow_lite.skeleton import EDGES
+
+SMOKE = replace(RECIPES["smoke"], steps=6, batch=4)
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run")
+    return train(SMOKE, folder, progress=False), folder
+
+
+def weights(prior):
+    return torch.cat([w.flatten() for w in prior.network.parameters()])
+
+
+def test_bone_vectors_add_up_along_the_skeleton():
+    bones = torch.randn(22, 3)
+    positions = bones_to_positions() @ bones
+    torch.testing.assert_close(positions[0], bones[0])
+    for parent, child in EDGES:
+        torch.testing.assert_close(positions[child] - positions[parent], bones[child])
+
+
+@pytest.mark.parametrize("frames", [40, 59, 60, 77, 100])
+def test_velocity_points_from_where_we_are_to_the_endpoint(trained, frames):
+    prior, _ = trained
+    x = prior.noise_std * torch.randn(2, frames, 22, 3)
+    v = prior(x, 0.75, ["a person walks", None])
+    assert v.shape == x.shape
+    torch.testing.assert_close(x + 0.25 * v, prior.endpoint(x, 0.75, ["a person walks", None]))
+
+
+def test_a_batch_is_its_members_and_every_time_may_differ(trained):
+    prior, _ = trained
+    x, t = torch.randn(3, 60, 22, 3), torch.tensor([0.0, 0.5, 0.9])
+    prompts = ["a person waves", None, "a person walks forward"]
+    together = prior.endpoint(x, t, prompts)
+    for i in range(3):
+        alone = prior.endpoint(x[i : i + 1], float(t[i]), [prompts[i]])
+        torch.testing.assert_close(together[i : i + 1], alone, atol=1e-4, rtol=1e-4)
+
+
+def test_the_prompt_matters_and_no_prompt_is_not_an_empty_one_by_accident():
+    encoder, words = TextEncoder(5, 16), torch.tensor([[1, 2], [2, 1], [0, 0], [1, 0]])
+    torch.nn.init.normal_(encoder.nothing)
+    out = encoder(words)
+    torch.testing.assert_close(out[2], encoder.nothing)
+    assert (out[0] - out[3]).abs().max() > 1e-3
+    padded = encoder(torch.nn.functional.pad(words, (0, 4)))
+    torch.testing.assert_close(padded, out)
+
+
+def test_unknown_words_are_reported_and_left_out():
+    vocabulary = Vocabulary.of(["a person walks", "a person jumps"])
+    assert vocabulary.words == ("a", "jumps", "person", "walks")
+    with pytest.warns(UserWarning, match=r"prompt: the prior never saw 'pirouettes', 'gladly'"):
+        ids = vocabulary.encode(["A person pirouettes gladly!", None])
+    assert ids.tolist() == [[1, 3], [0, 0]]
+
+
+def test_float64_in_is_float64_out(trained):
+    prior, _ = trained
+    assert prior(torch.randn(1, 60, 22, 3, dtype=torch.float64), 0.5).dtype == torch.float64
+
+
+def test_a_perfect_network_has_no_loss():
+    u1 = torch.randn(4, 60, 22, 3)
+    loss = loss_of(lambda x, t, ids: u1, u1, torch.zeros(4, 1), torch.Generator().manual_seed(0))
+    assert loss == 0
+
+
+def test_training_lowers_the_loss():
+    losses = []
+    trainer = Trainer(replace(SMOKE, steps=40, batch=8))
+    while trainer.step < 40:
+        losses.append(trainer.advance())
+    assert np.mean(losses[-8:]) < 0.7 * np.mean(losses[:4])
+
+
+def test_a_run_that_was_interrupted_ends_as_one_that_was_not(trained, tmp_path):
+    def stop(step, loss):
+        if step == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train(SMOKE, tmp_path, progress=False, on_step=stop)
+    assert not (tmp_path / "prior.safetensors").exists()
+    resumed = train(SMOKE, tmp_path, progress=False)
+    assert torch.equal(weights(resumed), weights(trained[0]))
+
+
+def test_a_checkpoint_comes_back_as_it_was(trained, tmp_path):
+    prior, _ = trained
+    pf.prior.save_prior(prior, tmp_path / "p.safetensors", torch.float32)
+    again = pf.load_prior(tmp_path / "p.safetensors")
+    assert torch.equal(weights(again), weights(prior))
+    assert again.vocabulary.words == prior.vocabulary.words
+    assert (again.noise_std, again.lengths, again.recipe) == (
+        prior.noise_std,
+        (40, 100),
+        prior.recipe,
+    )
+
+
+@pytest.mark.parametrize("keep", [0, 7, 1000, -1])
+def test_a_truncated_checkpoint_is_named_and_never_half_loaded(trained, tmp_path, keep):
+    data = (trained[1] / "prior.safetensors").read_bytes()
+    path = tmp_path / "cut.safetensors"
+    path.write_bytes(data[:keep])
+    with pytest.raises(ValueError, match=r"cut\.safetensors is damaged or is not a checkpoint"):
+        pf.load_prior(path)
+
+
+def test_other_files_are_refused(trained, tmp_path):
+    with pytest.raises(FileNotFoundError, match="there is no checkpoint at"):
+        pf.load_prior(tmp_path / "nothing.safetensors")
+    with pytest.raises(ValueError, match="is not a projflow_lite prior"):
+        pf.load_prior(trained[1] / "run.safetensors")
+
+
+def test_a_folder_of_another_recipe_is_not_overwritten(trained):
+    with pytest.raises(ValueError, match="was made by another recipe; choose another folder"):
+        train(replace(SMOKE, seed=1), trained[1], progress=False)
+
+
+def test_a_damaged_run_is_named(trained, tmp_path):
+    (tmp_path / "run.safetensors").write_bytes((trained[1] / "run.safetensors").read_bytes()[:5000])
+    with pytest.raises(ValueError, match=r"run\.safetensors is damaged"):
+        train(SMOKE, tmp_path, progress=False)
+
+
+def test_wrong_shapes_lengths_and_prompts_are_refused(trained):
+    prior, _ = trained
+    with pytest.raises(
+        ValueError, match=r"prior: expected shape \(batch, frames, 22, 3\), got \(60, 22, 3\)"
+    ):
+        prior(torch.zeros(60, 22, 3), 0.5)
+    with pytest.raises(
+        ValueError, match="prior: 500 frames; it was trained on motions of 40 to 100"
+    ):
+        pf.sample(prior, frames=500)
+    with pytest.raises(ValueError, match="prompt: 3 prompts for 2 motions"):
+        prior(torch.zeros(2, 60, 22, 3), 0.5, ["a", "b", "c"])
+
+
+def test_the_log_has_a_line_every_fifty_steps(tmp_path):
+    train(replace(SMOKE, steps=50, batch=2), tmp_path, progress=False)
+    line = json.loads((tmp_path / "loss.jsonl").read_text())
+    assert line["step"] == 50
+    assert np.isfinite(line["loss"])
