@@ -37,7 +37,7 @@ hooks: $(VENV)/.test
 	$(BIN)/nbstripout --install --attributes .gitattributes
 
 pictures: $(VENV)/.test
-	$(BIN)/python -m projflow_lite.exchange.pictures
+	$(BIN)/projflow-lite reproduce contact-sheet
 
 clean:
 	rm -rf $(VENV) artefacts .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -16,7 +16,7 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True)
 
     train = commands.add_parser("train", help="teach the tiny flow; stop and resume at will")
-    train.add_argument("--recipe", default="classroom", help="classroom (default), shipped or smoke")
+    train.add_argument("--recipe", default="classroom", help="classroom, shipped or smoke")
     train.add_argument("--out", type=Path, help="folder of the run (default: runs/RECIPE)")
     train.add_argument("--steps", type=int, help="optimiser steps, instead of the recipe's")
     train.add_argument("--seed", type=int, default=0)
@@ -34,6 +34,14 @@ def build_parser() -> argparse.ArgumentParser:
     sample.add_argument("--seed", type=int, default=0)
     sample.add_argument("--json", type=Path, help="write length, time and residual to this file")
     sample.set_defaults(run=run_sample)
+
+    reproduce = commands.add_parser("reproduce", help="measure or draw again what the docs show")
+    reproduce.add_argument("name", choices=["noise-reading", "contact-sheet"])
+    reproduce.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
+    reproduce.add_argument("--out", type=Path, default=Path("book/pictures"), help="for pictures")
+    reproduce.add_argument("--quick", action="store_true", help="a few minutes, wide intervals")
+    reproduce.add_argument("--json", type=Path, help="write the numbers to this file")
+    reproduce.set_defaults(run=run_reproduce)
     return parser
 
 
@@ -83,6 +91,20 @@ def run_sample(options: argparse.Namespace) -> dict:
     return {"motion": str(options.out), "frames": motion.frames, "seconds": round(seconds, 3)}
 
 
+def run_reproduce(options: argparse.Namespace) -> dict:
+    """Run one study."""
+    from projflow_lite.prior import load_prior
+    from projflow_lite.studies import contact_sheet, noise_reading
+
+    prior = load_prior(options.prior)
+    if options.name == "contact-sheet":
+        return {"written": [str(path) for path in contact_sheet.run(prior, options.out)]}
+    size = {"clips": 32, "seeds": 2} if options.quick else {}
+    rows = noise_reading.run(prior, **size)
+    print(noise_reading.table(rows))
+    return {"rows": rows}
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; return the exit status."""
     options = build_parser().parse_args(arguments)
@@ -95,7 +117,8 @@ def main(arguments: list[str] | None = None) -> int:
         print("\nStopped. The same command goes on from here.", file=sys.stderr)
         return 130
     for name, value in numbers.items():
-        print(f"{name}: {value}")
+        if name != "rows":
+            print(f"{name}: {value}")
     if options.json:
         options.json.write_text(json.dumps(numbers, indent=2) + "\n")
     return 0

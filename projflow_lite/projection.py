@@ -10,6 +10,8 @@ with the gain :math:`G = R^{-1} A^\top S^{-1}`.
 
 from __future__ import annotations
 
+from copy import copy
+
 import numpy as np
 import torch
 from numpy.typing import ArrayLike, NDArray
@@ -55,9 +57,10 @@ class Projector:
         device: str | torch.device = "cpu",
     ) -> None:
         check_rows(rows)
+        self.given = len(rows.y)
         covariance = np.linalg.inv(check_metric(metric))
-        keep = independent_rows(rows, covariance)
-        rows = Rows(rows.A[keep], rows.y[keep], rows.variance[keep])
+        self.keep = independent_rows(rows, covariance)
+        rows = Rows(rows.A[self.keep], rows.y[self.keep], rows.variance[self.keep])
         A, y, variance = rows
         self.frames = A.shape[1] // (N_JOINTS * 3)
         hard = variance == 0
@@ -65,9 +68,8 @@ class Projector:
         self.gain = SparseMap(gain_matrix(rows, covariance), dtype, device)
         self.y = torch.as_tensor(y, dtype=dtype, device=device)
         self.hard = torch.as_tensor(hard, dtype=dtype, device=device)
-        exact = hard & is_coordinate(A)
-        self.pinned = torch.as_tensor(A.indices[A.indptr[:-1][exact]], device=device).long()
-        self.pinned_to = torch.as_tensor(y[exact], dtype=dtype, device=device)
+        self.exact = np.flatnonzero(hard & is_coordinate(A))
+        self.pinned = torch.as_tensor(A.indices[A.indptr[self.exact]], device=device).long()
 
     def project(self, x1_hat: torch.Tensor) -> torch.Tensor:
         """Move a motion, or a batch, the shortest way onto the rows.
@@ -91,8 +93,29 @@ class Projector:
         # One step of iterative refinement: what rounding left over on the hard rows, removed.
         x = x + self.gain((self.y - self.A(x)) * self.hard)
         # The exact value is known, so the last bit need not be left to arithmetic.
-        x = x.index_copy(-1, self.pinned, self.pinned_to.expand(len(x), -1))
-        return x.reshape(x1_hat.shape)
+        exact = self.y[..., self.exact].expand(len(x), -1)
+        return x.index_copy(-1, self.pinned, exact).reshape(x1_hat.shape)
+
+    def aimed_at(self, y: ArrayLike) -> Projector:
+        """The same rows with other targets, one set for each motion of a batch.
+
+        The factorisation does not depend on the targets and is shared.
+
+        Args:
+            y: ``(batch, m)`` or ``(m,)``, metres, in the order of the rows.
+
+        Raises:
+            ValueError: if rows were redundant, for then new targets could contradict each other,
+                or if their number does not match.
+        """
+        targets = torch.as_tensor(np.asarray(y), dtype=self.y.dtype, device=self.y.device)
+        if targets.shape[-1] != len(self.keep) or not torch.isfinite(targets).all():
+            raise ValueError(f"Projector: expected (..., {len(self.keep)}) finite targets")
+        if len(self.keep) != self.given:
+            raise ValueError("Projector: redundant rows cannot be aimed elsewhere")
+        other = copy(self)
+        other.y = targets
+        return other
 
 
 class SparseMap:

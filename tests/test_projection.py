@@ -128,6 +128,20 @@ def test_gradients_flow_and_agree_with_finite_differences():
     assert torch.autograd.gradcheck(projector.project, (x,))
 
 
+def test_one_factorisation_serves_targets_of_every_motion_of_a_batch():
+    wish = pf.pin("head", [1, 3], np.zeros((2, 3))) & pf.offset("neck", "head", [0, -0.1, 0])
+    targets = np.random.default_rng(0).normal(size=(4, 6))
+    rows = wish.rows(FRAMES)
+    y = np.concatenate([targets, np.tile(rows.y[6:], (4, 1))], axis=1)
+    x = torch.randn(4, FRAMES, 22, 3, dtype=torch.float64)
+    together = pf.Projector(rows, dtype=torch.float64).aimed_at(y).project(x)
+    for k in range(4):
+        alone = pf.Projector(rows._replace(y=y[k]), dtype=torch.float64).project(x[k])
+        torch.testing.assert_close(together[k], alone, atol=1e-13, rtol=0)
+    with pytest.raises(ValueError, match=r"expected \(\.\.\., 24\) finite targets"):
+        pf.Projector(rows).aimed_at(np.zeros(5))
+
+
 def test_no_rows_leave_a_motion_alone():
     x = torch.randn(2, 22, 3)
     empty = Rows(sparse.csr_matrix((0, 132)), np.zeros(0), np.zeros(0))

@@ -4,7 +4,7 @@ Real motion does not score zero on most of these: print a held-out row beside a 
 """
 
 from projflow_lite.scores.control import ControlErrors, control_errors
-from projflow_lite.scores.likeness import frechet_distance, kinetic_features
+from projflow_lite.scores.likeness import frechet_distance, kinetic_features, pose_features
 from projflow_lite.scores.physics import (
     bone_length_error,
     foot_skating,
@@ -20,5 +20,6 @@ __all__ = [
     "frechet_distance",
     "kinetic_features",
     "mean_jerk",
+    "pose_features",
     "worst_acceleration",
 ]

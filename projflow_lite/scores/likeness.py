@@ -55,3 +55,24 @@ def kinetic_features(positions: NDArray, fps: float = FPS) -> NDArray:
     acceleration = np.square(np.diff(ends, 2, axis=-3) * fps**2).sum(-1).mean(-2)
     # The floor of 1 mm/s keeps a foot that never moves finite.
     return 0.5 * np.log(np.concatenate([speed, acceleration], axis=-1) + 1e-6)
+
+
+def pose_features(positions: NDArray) -> NDArray:
+    """Mean and spread over time of feet, head and wrists around the pelvis, and where it goes.
+
+    A hand-made stand-in for a learned embedding: it knows nothing of prompts.
+
+    Args:
+        positions: ``(..., frames, 22, 3)``, metres.
+
+    Returns:
+        ``(..., 36)``, metres.
+    """
+    ends = check_positions(positions, "pose_features")[..., ENDS, :]
+    around = ends[..., 1:, :] - ends[..., :1, :]
+    travel = ends[..., -1, 0, :] - ends[..., 0, 0, :]
+    height = ends[..., 0, 1]
+    parts = [around.mean(-3), around.std(-3)]
+    flat = [part.reshape(*part.shape[:-2], -1) for part in parts]
+    pelvis = np.stack([height.mean(-1), height.std(-1), np.ptp(height, axis=-1)], axis=-1)
+    return np.concatenate([*flat, travel, pelvis], axis=-1)

@@ -1,0 +1,1 @@
+"""Questions answered by measurement, each with one command: ``projflow-lite reproduce NAME``."""

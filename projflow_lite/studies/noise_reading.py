@@ -1,0 +1,164 @@
+"""Which noise should eq. 9 of ProjFlow mix, and how much of it should be fresh?
+
+Printed, it is the noise that sampling began with. Released code takes the noise that the current
+state and velocity imply. Here both are measured, over guidance, density of keyframes and joint, on
+prompts and keyframes of held-out clips, with an interval over seeds.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from tqdm.auto import tqdm
+
+from data_synth import Clips, make_clips
+from projflow_lite import scores
+from projflow_lite.constraints import pin
+from projflow_lite.prior import Prior
+from projflow_lite.projection import Projector
+from projflow_lite.samplers import euler, guided, projflow
+from projflow_lite.skeleton import joint_index
+
+FRAMES = 60
+HELD_OUT_SEED = 987_654
+"""Far from the seeds that training draws its clips from."""
+
+READINGS: dict[str, dict[str, Any]] = {
+    "original": {"noise": "original", "eta": None},
+    "implied": {"noise": "implied", "eta": None},
+    "implied, none fresh": {"noise": "implied", "eta": 0.0},
+}
+
+
+def keyframes(count: int) -> NDArray[np.int64]:
+    """`count` frames spread evenly, neither end included unless every frame is asked for."""
+    if count == FRAMES:
+        return np.arange(FRAMES)
+    return np.linspace(0, FRAMES - 1, count + 2).round().astype(int)[1:-1]
+
+
+def controlled(
+    prior: Prior,
+    clips: Clips,
+    joint: str,
+    keys: int,
+    guidance: float,
+    steps: int,
+    options: dict[str, Any],
+    seed: int,
+) -> NDArray:
+    """Generate one motion for every clip: its prompt, and some of its keyframes pinned exactly.
+
+    Returns:
+        ``(clips, frames, 22, 3)`` metres.
+    """
+    frames = keyframes(keys)
+    targets = clips.positions[:, frames][:, :, [joint_index(joint, "noise_reading")]]
+    projector = Projector(pin(joint, frames, targets[0, :, 0]).rows(FRAMES))
+    projector = projector.aimed_at(targets.reshape(len(targets), -1))
+    generator = torch.Generator().manual_seed(seed)
+    x0 = prior.noise_std * torch.randn(clips.positions.shape, generator=generator)
+    times = torch.linspace(0, 1, steps + 1).tolist()
+    with torch.inference_mode():
+        field = guided(prior, guidance)
+        x = projflow(
+            field, projector.project, x0, times, generator, clips.captions,
+            noise_std=prior.noise_std, **options,
+        )  # fmt: skip
+    return x.numpy()
+
+
+def held_out(clips: int, seed: int) -> NDArray:
+    """Motions of the data itself, other ones for every seed."""
+    return make_clips(clips, frames=FRAMES, seed=HELD_OUT_SEED + 2 + seed).positions
+
+
+def free(prior: Prior, clips: Clips, guidance: float, steps: int, seed: int) -> NDArray:
+    """Generate one motion for every prompt, without a wish."""
+    generator = torch.Generator().manual_seed(seed)
+    x0 = prior.noise_std * torch.randn(clips.positions.shape, generator=generator)
+    times = torch.linspace(0, 1, steps + 1).tolist()
+    with torch.inference_mode():
+        return euler(guided(prior, guidance), x0, times, clips.captions).numpy()
+
+
+def score(positions: NDArray, reference: NDArray) -> dict[str, float]:
+    """The columns of the table, each over a whole set of clips."""
+    return {
+        "kinetic distance": scores.frechet_distance(
+            scores.kinetic_features(positions), scores.kinetic_features(reference)
+        ),
+        "pose distance": scores.frechet_distance(
+            scores.pose_features(positions), scores.pose_features(reference)
+        ),
+        "bone error %": 100 * float(scores.bone_length_error(positions).mean()),
+        "skating": float(scores.foot_skating(positions).mean()),
+        "jerk": float(scores.mean_jerk(positions).mean()),
+        "worst acceleration": float(np.median(scores.worst_acceleration(positions))),
+    }
+
+
+def repeat(make: Callable[[int], NDArray], reference: NDArray, seeds: int) -> dict[str, Any]:
+    """Score several seeds: the mean of each column and a 95 % interval of that mean."""
+    columns = [score(make(seed), reference) for seed in range(seeds)]
+    row: dict[str, Any] = {}
+    for name in columns[0]:
+        values = np.array([column[name] for column in columns])
+        half = 1.96 * values.std(ddof=1) / np.sqrt(seeds) if seeds > 1 else float("nan")
+        row[name] = {"mean": float(values.mean()), "half width": float(half)}
+    return row
+
+
+def run(
+    prior: Prior,
+    clips: int = 128,
+    seeds: int = 3,
+    steps: int = 50,
+    joints: tuple[str, ...] = ("pelvis", "left_wrist"),
+    densities: tuple[int, ...] = (1, 5, FRAMES),
+    guidances: tuple[float, ...] = (1.0, 2.0),
+) -> list[dict[str, Any]]:
+    """Measure every combination; see the module's docstring.
+
+    Returns:
+        One record a row: what was asked for and its scores. The first rows are held-out data
+        against held-out data, and unconstrained samples.
+    """
+    wished = make_clips(clips, frames=FRAMES, seed=HELD_OUT_SEED)
+    reference = make_clips(8 * clips, frames=FRAMES, seed=HELD_OUT_SEED + 1).positions
+    data = partial(held_out, clips)
+    rows: list[dict[str, Any]] = [
+        {"method": "held-out data", "scores": repeat(data, reference, seeds)}
+    ]
+    for guidance in guidances:
+        make = partial(free, prior, wished, guidance, steps)
+        row = {"method": "no wish", "guidance": guidance}
+        rows.append(row | {"scores": repeat(make, reference, seeds)})
+    grid = list(itertools.product(joints, densities, guidances, READINGS))
+    for joint, keys, guidance, reading in tqdm(grid, unit="row"):
+        make = partial(controlled, prior, wished, joint, keys, guidance, steps, READINGS[reading])
+        row = {"method": reading, "joint": joint, "keyframes": keys, "guidance": guidance}
+        rows.append(row | {"scores": repeat(make, reference, seeds)})
+    return rows
+
+
+def table(rows: list[dict[str, Any]]) -> str:
+    """The records as text, one line each."""
+    names = list(rows[0]["scores"])
+    lines = [
+        f"{'method':20s} {'joint':11s} {'keys':>4s} {'g':>4s}  "
+        + "  ".join(f"{n:>18s}" for n in names)
+    ]
+    for row in rows:
+        cells = [f"{c['mean']:9.3f} ±{c['half width']:7.3f}" for c in row["scores"].values()]
+        lines.append(
+            f"{row['method']:20s} {row.get('joint', ''):11s} {row.get('keyframes', ''):>4} "
+            f"{row.get('guidance', ''):>4}  " + "  ".join(cells)
+        )
+    return "\n".join(lines)
