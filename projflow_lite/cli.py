@@ -99,8 +99,8 @@ def run_reproduce(options: argparse.Namespace) -> dict:
     prior = load_prior(options.prior)
     if options.name == "contact-sheet":
         return {"written": [str(path) for path in contact_sheet.run(prior, options.out)]}
-    size = {"clips": 32, "seeds": 2} if options.quick else {}
-    rows = noise_reading.run(prior, **size)
+    clips, seeds = (32, 2) if options.quick else (128, 3)
+    rows = noise_reading.run(prior, clips, seeds)
     print(noise_reading.table(rows))
     return {"rows": rows}
 

@@ -285,7 +285,7 @@ def check_axes(axes: str) -> NDArray[np.int64]:
 
 def check_std(std: float) -> None:
     """Refuse a standard deviation that is negative or not finite."""
-    if not np.isscalar(std) or not np.isfinite(std) or std < 0:  # type: ignore[operator, arg-type]
+    if not isinstance(std, int | float | np.number) or not 0 <= std < np.inf:
         raise ValueError(f"pin: std is a length in metres, 0 or more, not {std!r}")
 
 
@@ -296,7 +296,7 @@ def check_frames(
     if frames is None:
         return None, False
     single = isinstance(frames, int | np.integer)
-    listed = np.atleast_1d(np.asarray(frames if single else list(frames)))  # type: ignore[call-overload]
+    listed = np.array([frames] if isinstance(frames, int | np.integer) else list(frames))
     if listed.ndim != 1 or len(listed) == 0 or listed.dtype.kind not in "iu":
         raise ValueError(f"{who}: frames is an integer or a list of integers, not {frames!r}")
     return listed.astype(np.int64), single

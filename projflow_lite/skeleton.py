@@ -93,7 +93,7 @@ def joint_index(joint: str | int, who: str = "joint_index") -> int:
 def joint_indices(joints: str | int | Iterable[str | int], who: str = "joint_indices") -> list[int]:
     """Indices of one or several joints; see `joint_index`."""
     if isinstance(joints, str | int | np.integer):
-        joints = [joints]  # type: ignore[list-item]
+        joints = [joints]
     return [joint_index(joint, who) for joint in joints]
 
 

@@ -51,7 +51,10 @@ def draw_body(axes, points: NDArray, alpha: float = 1.0) -> None:
 
 
 def contact_sheet(
-    motions: Sequence[Motion], path: str | Path, poses: int = 10, titles: Sequence[str] | None = None
+    motions: Sequence[Motion],
+    path: str | Path,
+    poses: int = 10,
+    titles: Sequence[str] | None = None,
 ) -> None:
     """Write one row of poses for every motion, left to right in time.
 
@@ -86,7 +89,9 @@ def draw_row(axes, motion: Motion, poses: int, gap: float = 0.95) -> None:
         ground = np.array([pose[0, 0], 0.0, pose[0, 2]])
         points = camera(pose - ground) + [place * gap, 0.0]
         draw_body(axes, points)
-        axes.text(place * gap, -0.32, f"{frame}", ha="center", va="top", fontsize=7, color="#777777")
+        axes.text(
+            place * gap, -0.32, f"{frame}", ha="center", va="top", fontsize=7, color="#777777"
+        )
     axes.plot([-0.5 * gap, (poses - 0.5) * gap], [0, 0], color="#cccccc", lw=0.8, zorder=0)
     axes.set_xlim(-0.6 * gap, (poses - 0.4) * gap)
     axes.set_ylim(-0.45, 2.05)
@@ -94,7 +99,9 @@ def draw_row(axes, motion: Motion, poses: int, gap: float = 0.95) -> None:
     axes.axis("off")
 
 
-def film(motion: Motion, path: str | Path, yaw: float = 40.0, trail: str | int | None = None) -> None:
+def film(
+    motion: Motion, path: str | Path, yaw: float = 40.0, trail: str | int | None = None
+) -> None:
     """Write an animated GIF of one motion.
 
     Args:
@@ -119,6 +126,6 @@ def film(motion: Motion, path: str | Path, yaw: float = 40.0, trail: str | int |
         axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
         axes.axis("off")
 
-    animation = FuncAnimation(figure, show, motion.frames)  # type: ignore[arg-type]
+    animation = FuncAnimation(figure, show, motion.frames)
     animation.save(path, PillowWriter(fps=round(motion.fps)))
     plt.close(figure)
