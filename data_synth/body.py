@@ -1,0 +1,235 @@
+"""The body that moves: proportions, a trunk by forward kinematics, arms and legs by two-bone IK."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from projflow_lite.skeleton import JOINTS, N_JOINTS, PARENTS
+
+# Bone vectors of an upright body with arms hanging, metres: +x is the body's left, +z ahead.
+REST = {
+    "left_hip": (0.075, -0.088, 0.0),
+    "spine1": (0.0, 0.122, -0.005),
+    "left_knee": (0.008, -0.405, 0.0),
+    "spine2": (0.0, 0.130, 0.0),
+    "left_ankle": (0.0, -0.430, 0.0),
+    "spine3": (0.0, 0.050, 0.005),
+    "left_foot": (0.016, -0.060, 0.122),
+    "neck": (0.0, 0.200, 0.0),
+    "left_collar": (0.070, 0.115, -0.005),
+    "head": (0.0, 0.092, 0.035),
+    "left_shoulder": (0.112, 0.038, -0.005),
+    "left_elbow": (0.0, -0.275, 0.0),
+    "left_wrist": (0.0, -0.272, 0.0),
+}
+SIDES = ("left", "right")
+TOE_HEIGHT = 0.018
+"""Height of the toe joint of a foot flat on the floor, metres."""
+
+
+def joint(name: str) -> int:
+    """Index of a joint by name."""
+    return JOINTS.index(name)
+
+
+def sample_bones(random: np.random.Generator, n: int) -> NDArray:
+    """Bone vectors at rest for `n` bodies, ``(n, 22, 3)`` metres, left and right alike."""
+    size = random.normal(1.0, 0.035, n).clip(0.92, 1.08)
+    bones = np.zeros((n, N_JOINTS, 3))
+    for name, vector in REST.items():
+        length = size * random.normal(1.0, 0.02, n).clip(0.95, 1.05)
+        bones[:, joint(name)] = length[:, None] * np.array(vector)
+        if name.startswith("left"):
+            other = joint(name.replace("left", "right"))
+            bones[:, other] = bones[:, joint(name)] * [-1, 1, 1]
+    return bones
+
+
+@dataclass
+class Pose:
+    """All that decides where the joints of `n` clips are in every frame.
+
+    Angles are radians, positions metres; the third axis of `toe`, `foot_*`, `hand` is left, right.
+
+    Attributes:
+        pelvis: ``(n, frames, 3)``.
+        yaw, pitch, roll: ``(n, frames)`` of the pelvis: turn left, lean ahead, list left.
+        bend, twist, tilt: ``(n, frames)`` of the spine from pelvis to chest, in the same sense.
+        nod, look: ``(n, frames)`` of the head on the neck.
+        toe: ``(n, frames, 2, 3)`` where the toe joint would be if the foot were flat.
+        foot_yaw, foot_pitch: ``(n, frames, 2)``; pitch > 0 lifts the heel about the toe, pitch < 0
+            the toe about the heel.
+        hand: ``(n, frames, 2, 3)`` wrist relative to its shoulder, in the chest's axes.
+    """
+
+    pelvis: NDArray
+    yaw: NDArray
+    pitch: NDArray
+    roll: NDArray
+    bend: NDArray
+    twist: NDArray
+    tilt: NDArray
+    nod: NDArray
+    look: NDArray
+    toe: NDArray
+    foot_yaw: NDArray
+    foot_pitch: NDArray
+    hand: NDArray
+
+
+def turn(yaw: NDArray, pitch: NDArray | float = 0.0, roll: NDArray | float = 0.0) -> NDArray:
+    """Rotations ``(..., 3, 3)``: first roll about z, then pitch about x, then yaw about y."""
+    yaw, pitch, roll = np.broadcast_arrays(yaw, pitch, roll)
+    cy, sy, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(pitch), np.sin(pitch)
+    cr, sr = np.cos(-roll), np.sin(-roll)
+    rows = [
+        [cy * cr + sy * sp * sr, -cy * sr + sy * sp * cr, sy * cp],
+        [cp * sr, cp * cr, -sp],
+        [-sy * cr + cy * sp * sr, sy * sr + cy * sp * cr, cy * cp],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def rotate(matrix: NDArray, vector: NDArray) -> NDArray:
+    """Apply rotations ``(..., 3, 3)`` to vectors ``(..., 3)``."""
+    return (matrix @ vector[..., None])[..., 0]
+
+
+def two_bones(
+    root: NDArray, end: NDArray, upper: NDArray, lower: NDArray, pole: NDArray
+) -> NDArray:
+    """Where the middle joint of a limb goes, so that both bones keep their length.
+
+    Args:
+        root: ``(..., 3)`` first joint.
+        end: ``(..., 3)`` last joint, within reach.
+        upper: ``(...)`` length of the first bone.
+        lower: ``(...)`` length of the second.
+        pole: ``(..., 3)`` direction to which the limb bends.
+    """
+    along = end - root
+    distance = np.linalg.norm(along, axis=-1)
+    along = along / distance[..., None]
+    cosine = (distance**2 + upper**2 - lower**2) / (2 * distance * upper)
+    cosine = cosine.clip(-1, 1)
+    side = pole - (pole * along).sum(-1, keepdims=True) * along
+    side = side / np.linalg.norm(side, axis=-1, keepdims=True)
+    sine = np.sqrt(1 - cosine**2)
+    return root + upper[..., None] * (cosine[..., None] * along + sine[..., None] * side)
+
+
+def within_reach(offset: NDArray, reach: NDArray) -> NDArray:
+    """Shorten offsets ``(..., 3)`` smoothly so that none is longer than `reach`."""
+    distance = np.linalg.norm(offset, axis=-1)
+    knee = 0.9 * reach  # below this nothing changes; above it the limb approaches full stretch
+    beyond = np.maximum(distance - knee, 0)
+    soft = knee + (reach - knee) * (1 - np.exp(-beyond / (reach - knee)))
+    return offset * (np.where(distance > knee, soft, distance) / distance)[..., None]
+
+
+def foot_joints(pose: Pose, bones: NDArray) -> tuple[NDArray, NDArray]:
+    """Ankles and toes, each ``(n, frames, 2, 3)``."""
+    vector = np.stack([bones[:, joint(f"{side}_foot")] for side in SIDES], axis=1)[:, None]
+    flat = turn(pose.foot_yaw)
+    pitched = turn(pose.foot_yaw, pose.foot_pitch)
+    heel_up = (pose.foot_pitch > 0)[..., None]
+    ankle = pose.toe - rotate(np.where(heel_up[..., None], pitched, flat), vector)
+    toe = np.where(heel_up, pose.toe, ankle + rotate(pitched, vector))
+    return ankle, toe
+
+
+def assemble(pose: Pose, bones: NDArray) -> NDArray:
+    """Joint positions ``(n, frames, 22, 3)`` of a pose.
+
+    Args:
+        pose: what the body does.
+        bones: ``(n, 22, 3)`` bone vectors at rest.
+    """
+    x = np.zeros((*pose.pelvis.shape[:2], N_JOINTS, 3))
+    pelvis = turn(pose.yaw, pose.pitch, pose.roll)
+    chest = pelvis @ turn(pose.twist, pose.bend, pose.tilt)
+    third, two_thirds = (
+        pelvis @ turn(pose.twist * s, pose.bend * s, pose.tilt * s) for s in (1 / 3, 2 / 3)
+    )
+    head = chest @ turn(pose.look, pose.nod)
+    frame_of = {"spine1": pelvis, "spine2": third, "spine3": two_thirds, "head": head}
+    x[:, :, 0] = pose.pelvis
+    for name in (
+        "left_hip", "right_hip", "spine1", "spine2", "spine3", "neck", "head",
+        "left_collar", "right_collar", "left_shoulder", "right_shoulder",
+    ):  # fmt: skip
+        rotation = pelvis if name.endswith("hip") else frame_of.get(name, chest)
+        j = joint(name)
+        x[:, :, j] = x[:, :, PARENTS[j]] + rotate(rotation, bones[:, None, j])
+    ankles, toes = foot_joints(pose, bones)
+    lengths = np.linalg.norm(bones, axis=-1)
+    for s, side in enumerate(SIDES):
+        hip, knee, ankle, foot = (
+            joint(f"{side}_{part}") for part in ("hip", "knee", "ankle", "foot")
+        )
+        x[:, :, ankle], x[:, :, foot] = ankles[:, :, s], toes[:, :, s]
+        ahead = 0.5 * (pelvis[..., 2] + turn(pose.foot_yaw[..., s])[..., 2])
+        x[:, :, knee] = two_bones(
+            x[:, :, hip], x[:, :, ankle], lengths[:, None, knee], lengths[:, None, ankle], ahead
+        )
+        shoulder, elbow, wrist = (
+            joint(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist")
+        )
+        upper, lower = lengths[:, None, elbow], lengths[:, None, wrist]
+        hand = within_reach(pose.hand[:, :, s], 0.985 * (upper + lower))
+        x[:, :, wrist] = x[:, :, shoulder] + rotate(chest, hand)
+        out = np.array([0.2 if side == "left" else -0.2, -0.3, -1.0])
+        x[:, :, elbow] = two_bones(
+            x[:, :, shoulder],
+            x[:, :, wrist],
+            upper,
+            lower,
+            rotate(chest, np.broadcast_to(out, hand.shape)),
+        )
+    return x
+
+
+def leg_length(bones: NDArray) -> NDArray:
+    """Thigh plus shank, ``(n,)`` metres."""
+    return np.linalg.norm(bones[:, [joint("left_knee"), joint("left_ankle")]], axis=-1).sum(-1)
+
+
+def standing_height(bones: NDArray) -> NDArray:
+    """Height of the pelvis with straight legs on flat feet, ``(n,)`` metres."""
+    ankle = TOE_HEIGHT - bones[:, joint("left_foot"), 1]
+    return ankle + leg_length(bones) - bones[:, joint("left_hip"), 1]
+
+
+def lower_into_reach(pose: Pose, bones: NDArray, share: float = 0.985) -> None:
+    """Lower the pelvis, smoothly and only where needed, until both legs reach their feet."""
+    ankles, _ = foot_joints(pose, bones)
+    pelvis = turn(pose.yaw, pose.pitch, pose.roll)
+    room = np.full(pose.pelvis.shape[:2], np.inf)
+    for s, side in enumerate(SIDES):
+        hip = rotate(
+            pelvis, np.broadcast_to(bones[:, None, joint(f"{side}_hip")], pose.pelvis.shape)
+        )
+        flat = np.square((pose.pelvis + hip - ankles[:, :, s])[..., [0, 2]]).sum(-1)
+        reach = (share * leg_length(bones))[:, None] ** 2 - flat
+        top = ankles[:, :, s, 1] + np.sqrt(reach.clip(0.05)) - hip[..., 1]
+        room = np.minimum(room, top)
+    excess = (pose.pelvis[..., 1] - room).clip(0)
+    pose.pelvis[..., 1] -= smooth(widest(excess, 3), 1.6)
+
+
+def widest(x: NDArray, radius: int) -> NDArray:
+    """Largest value within `radius` frames, along the last axis."""
+    padded = np.pad(x, ((0, 0), (radius, radius)), mode="edge")
+    return np.lib.stride_tricks.sliding_window_view(padded, 2 * radius + 1, axis=-1).max(-1)
+
+
+def smooth(x: NDArray, sigma: float) -> NDArray:
+    """Gaussian smoothing along the last axis, standard deviation in frames."""
+    radius = int(np.ceil(3 * sigma))
+    kernel = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma) ** 2)
+    padded = np.pad(x, ((0, 0), (radius, radius)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * radius + 1, axis=-1)
+    return windows @ (kernel / kernel.sum())

@@ -1,0 +1,94 @@
+"""Clips by the thousand: the same seed gives the same clips."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from difflib import get_close_matches
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from data_synth.actions import MAKERS
+from data_synth.body import assemble, sample_bones
+from data_synth.captions import caption
+
+ACTIONS: tuple[str, ...] = tuple(MAKERS)
+SHORTEST, LONGEST = 20, 196
+
+
+class Clips(NamedTuple):
+    """A set of clips of one length.
+
+    Attributes:
+        positions: ``(n, frames, 22, 3)`` float32, metres; the pelvis is over the origin and faces
+            +z in frame 0, the floor is at y = 0.
+        captions: a sentence for each clip.
+        actions: the name of each clip's action.
+        parameters: what was drawn, ``(n,)`` each; NaN where an action has no such parameter.
+    """
+
+    positions: NDArray[np.float32]
+    captions: list[str]
+    actions: list[str]
+    parameters: dict[str, NDArray[np.float64]]
+
+
+def make_clips(
+    n: int, frames: int = 60, seed: int = 0, actions: Sequence[str] | None = None
+) -> Clips:
+    """Make `n` clips of synthetic motion at 20 frames a second.
+
+    Args:
+        n: how many.
+        frames: length of each, 20 to 196.
+        seed: the same seed, and the same other arguments, give the same clips.
+        actions: names of `ACTIONS`; by default all. Each comes equally often, in random order.
+
+    Raises:
+        ValueError: for an unknown action, a length out of range, or fewer than one clip.
+    """
+    names = check(n, frames, actions)
+    random = np.random.default_rng(seed)
+    order = random.permutation(np.arange(n) % len(names))
+    positions = np.zeros((n, frames, 22, 3), dtype=np.float32)
+    captions, done = [""] * n, [names[k] for k in order]
+    parameters: dict[str, NDArray] = {}
+    for k, name in enumerate(names):
+        members = np.flatnonzero(order == k)
+        if len(members) == 0:
+            continue
+        bones = sample_bones(random, len(members))
+        pose, drawn = MAKERS[name](random, len(members), frames, bones)
+        x = assemble(pose, bones)
+        x[..., [0, 2]] -= x[:, :1, :1, [0, 2]]
+        positions[members] = x
+        for key, values in drawn.items():
+            parameters.setdefault(key, np.full(n, np.nan))[members] = values
+        for place, clip in enumerate(members):
+            own = {key: float(values[place]) for key, values in drawn.items()}
+            captions[clip] = caption(name, own, random)
+    return Clips(positions, captions, done, parameters)
+
+
+def check(n: int, frames: int, actions: Sequence[str] | None) -> list[str]:
+    """Refuse what cannot be made; return the names of the actions."""
+    if not isinstance(n, int | np.integer) or n < 1:
+        raise ValueError(f"make_clips: n is a whole number of at least 1, not {n!r}")
+    if not isinstance(frames, int | np.integer) or not SHORTEST <= frames <= LONGEST:
+        raise ValueError(f"make_clips: frames is {SHORTEST} to {LONGEST}, not {frames!r}")
+    names = (
+        list(ACTIONS)
+        if actions is None
+        else [actions]
+        if isinstance(actions, str)
+        else list(actions)
+    )
+    for name in names:
+        if name not in ACTIONS:
+            near = get_close_matches(str(name), ACTIONS, n=1)
+            hint = f"did you mean '{near[0]}'?" if near else f"the actions are {', '.join(ACTIONS)}"
+            raise ValueError(f"make_clips: '{name}' is not an action; {hint}")
+    if not names:
+        raise ValueError("make_clips: actions is an empty list")
+    return names
