@@ -36,11 +36,11 @@ def walking_gait(random: np.random.Generator, speed: NDArray, bones: NDArray) ->
         phase=random.uniform(0, 1, n),
         duty=(0.66 - 0.04 * speed).clip(0.56, 0.66),
         width=random.uniform(0.09, 0.16, n),
-        lift=random.uniform(0.03, 0.07, n),
+        lift=random.uniform(0.05, 0.09, n),
         bob=random.uniform(0.010, 0.019, n),
         sway=random.uniform(0.014, 0.030, n),
         pitch=(0.35 + 0.55 * speed).clip(0.35, 1.1),
-        swing=(0.12 + 0.24 * speed) * random.uniform(0.7, 1.3, n),
+        swing=(0.10 + 0.20 * speed) * random.uniform(0.6, 1.3, n),
         elbow=random.uniform(0.15, 0.55, n),
         lean=random.uniform(-0.01, 0.09, n),
         crouch=random.uniform(0.025, 0.045, n) * tall,
@@ -79,14 +79,27 @@ def steady(
 def straight(random: np.random.Generator, speed: NDArray, frames: int) -> Path:
     """A nearly straight path."""
     long = frames + 2 * MARGIN
-    heading = wander(random, len(speed), long, 0.03, 0.3)
+    heading = wander(random, len(speed), long, 0.05, 0.3)
     return path_of(steady(speed, frames, random), np.zeros((len(speed), long)), heading)
+
+
+def loosen(random: np.random.Generator, pose: Pose) -> None:
+    """Slow drift of trunk, head and hands over a gait: no two strides are alike."""
+    n, frames = pose.look.shape
+    pose.twist = pose.twist + wander(random, n, frames, 0.03, 0.5)
+    pose.bend = pose.bend + wander(random, n, frames, 0.03, 0.5)
+    pose.tilt = pose.tilt + wander(random, n, frames, 0.03, 0.5)
+    pose.look = pose.look + wander(random, n, frames, 0.12, 0.5)
+    for s in range(2):
+        for axis, size in ((0, 0.012), (1, 0.008), (2, 0.010)):
+            pose.hand[:, :, s, axis] += wander(random, n, frames, size, 0.5)
 
 
 def walk(random: np.random.Generator, n: int, frames: int, bones: NDArray) -> Made:
     """Walk straight ahead."""
     speed = random.normal(1.2, 0.24, n).clip(0.55, 1.8)
     pose = walk_over(walking_gait(random, speed, bones), straight(random, speed, frames), bones)
+    loosen(random, pose)
     return pose, {"speed": speed}
 
 
@@ -94,6 +107,7 @@ def run(random: np.random.Generator, n: int, frames: int, bones: NDArray) -> Mad
     """Run straight ahead."""
     speed = random.normal(3.0, 0.35, n).clip(2.2, 3.8)
     pose = walk_over(running_gait(random, speed, bones), straight(random, speed, frames), bones)
+    loosen(random, pose)
     return pose, {"speed": speed}
 
 
@@ -107,6 +121,7 @@ def walk_curve(random: np.random.Generator, n: int, frames: int, bones: NDArray)
     heading = side * rate * np.where(s_curve, 1.6 * np.sin(wave) / (2 * np.pi) * frames / FPS, long)
     path = path_of(steady(speed, frames, random), np.zeros_like(heading), heading)
     pose = walk_over(walking_gait(random, speed, bones), path, bones)
+    loosen(random, pose)
     pose.look = pose.look + 0.15 * side * ~s_curve
     return pose, {"speed": speed, "side": side[:, 0], "s_curve": s_curve[:, 0].astype(float)}
 
@@ -117,6 +132,7 @@ def walk_backward(random: np.random.Generator, n: int, frames: int, bones: NDArr
     gait = walking_gait(random, speed, bones)
     gait.pitch, gait.swing = gait.pitch * 0.35, gait.swing * 0.6
     pose = walk_over(gait, straight(random, -speed, frames), bones)
+    loosen(random, pose)
     return pose, {"speed": -speed}
 
 
@@ -132,6 +148,7 @@ def sidestep(random: np.random.Generator, n: int, frames: int, bones: NDArray) -
     zero = np.zeros((n, frames + 2 * MARGIN))
     drift = steady(speed * side[:, 0], frames, random)
     pose = walk_over(gait, path_of(zero, drift, wander(random, n, zero.shape[1], 0.02, 0.3)), bones)
+    loosen(random, pose)
     pose.look = pose.look + 0.35 * side
     return pose, {"speed": speed, "side": side[:, 0]}
 
@@ -150,7 +167,7 @@ def jump(random: np.random.Generator, n: int, frames: int, bones: NDArray) -> Ma
     total = crouch + push + air + absorb + 0.5 * scale
     begin = uniform(random, 0.02, 0.95, n) * np.maximum(frames / FPS - total, 0.0)
     start = pose.pelvis[:, :1, 1]
-    low, rise = start - uniform(random, 0.20, 0.34, n) * (0.6 + height), start + 0.045
+    low, rise = start - uniform(random, 0.20, 0.34, n) * (0.6 + height), start + 0.02
     off = begin + crouch + push
     land = off + air
     knots = [
@@ -184,7 +201,7 @@ def jump(random: np.random.Generator, n: int, frames: int, bones: NDArray) -> Ma
     pose.toe[..., 1] += (np.where(flying, ballistic - rise, 0) + tuck)[..., None]
     heel_off = hermite(
         t, np.concatenate([off - 0.16, off, off + 0.5 * air, land, land + 0.12], axis=1),
-        np.concatenate([zero, zero + 0.75, zero + 0.35, zero + 0.45, zero], axis=1),
+        np.concatenate([zero, zero + 0.85, zero + 0.85, zero + 0.6, zero], axis=1),
     )  # fmt: skip
     pose.foot_pitch += heel_off[..., None]
     depth = ((start - y) / 0.3).clip(0, 1.2)
@@ -201,9 +218,9 @@ def swing_arms(
     """Arms go back in the crouch, up in the take-off, and come down after landing."""
     n = len(begin)
     zero = np.zeros_like(begin)
-    up = uniform(random, 0.8, 2.2, n)
+    up = uniform(random, 0.7, 1.5, n)
     angle = hermite(
-        t, np.concatenate([begin, begin + crouch, off + 0.06, land, land + absorb + 0.35], axis=1),
+        t, np.concatenate([begin, begin + crouch, off + 0.12, land, land + absorb + 0.35], axis=1),
         np.concatenate([zero, zero - 0.7, up, 0.6 * up, zero], axis=1),
     )  # fmt: skip
     for s in range(2):

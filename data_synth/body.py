@@ -26,6 +26,9 @@ REST = {
     "left_wrist": (0.0, -0.272, 0.0),
 }
 SIDES = ("left", "right")
+LONGEST_LEG = 0.985
+"""Distance from hip to ankle, as a share of thigh plus shank: no knee is ever quite straight."""
+
 TOE_HEIGHT = 0.018
 """Height of the toe joint of a foot flat on the floor, metres."""
 
@@ -181,15 +184,21 @@ def assemble(pose: Pose, bones: NDArray) -> NDArray:
         upper, lower = lengths[:, None, elbow], lengths[:, None, wrist]
         hand = within_reach(pose.hand[:, :, s], 0.985 * (upper + lower))
         x[:, :, wrist] = x[:, :, shoulder] + rotate(chest, hand)
-        out = np.array([0.2 if side == "left" else -0.2, -0.3, -1.0])
-        x[:, :, elbow] = two_bones(
-            x[:, :, shoulder],
-            x[:, :, wrist],
-            upper,
-            lower,
-            rotate(chest, np.broadcast_to(out, hand.shape)),
-        )
+        pole = rotate(chest, elbow_pole(hand, 1.0 if side == "left" else -1.0))
+        x[:, :, elbow] = two_bones(x[:, :, shoulder], x[:, :, wrist], upper, lower, pole)
     return x
+
+
+def elbow_pole(hand: NDArray, sign: float) -> NDArray:
+    """Where an elbow points, in the chest's axes: back from a hanging arm, down from a raised one.
+
+    One fixed direction would not do: an arm that passes it would flip its elbow in one frame.
+    """
+    height = hand[..., 1] / np.linalg.norm(hand, axis=-1)
+    raised = ((height + 0.95) / 0.7).clip(0, 1)[..., None]
+    raised = raised**2 * (3 - 2 * raised)
+    hanging = np.array([0.2 * sign, -0.2, -1.0])
+    return hanging + raised * (np.array([0.6 * sign, -0.75, 0.2]) - hanging)
 
 
 def leg_length(bones: NDArray) -> NDArray:
@@ -203,8 +212,15 @@ def standing_height(bones: NDArray) -> NDArray:
     return ankle + leg_length(bones) - bones[:, joint("left_hip"), 1]
 
 
-def lower_into_reach(pose: Pose, bones: NDArray, share: float = 0.985) -> None:
-    """Lower the pelvis, smoothly and only where needed, until both legs reach their feet."""
+def lower_into_reach(pose: Pose, bones: NDArray, level: float = 0.0) -> None:
+    """Lower the pelvis until both legs reach their feet.
+
+    Args:
+        pose: changed in place.
+        bones: ``(n, 22, 3)`` bone vectors at rest.
+        level: share of the largest lowering that the whole clip gets, so that a walk keeps its bob;
+            the rest is done smoothly and only where it is needed.
+    """
     ankles, _ = foot_joints(pose, bones)
     pelvis = turn(pose.yaw, pose.pitch, pose.roll)
     room = np.full(pose.pelvis.shape[:2], np.inf)
@@ -213,11 +229,12 @@ def lower_into_reach(pose: Pose, bones: NDArray, share: float = 0.985) -> None:
             pelvis, np.broadcast_to(bones[:, None, joint(f"{side}_hip")], pose.pelvis.shape)
         )
         flat = np.square((pose.pelvis + hip - ankles[:, :, s])[..., [0, 2]]).sum(-1)
-        reach = (share * leg_length(bones))[:, None] ** 2 - flat
+        reach = (LONGEST_LEG * leg_length(bones))[:, None] ** 2 - flat
         top = ankles[:, :, s, 1] + np.sqrt(reach.clip(0.05)) - hip[..., 1]
         room = np.minimum(room, top)
     excess = (pose.pelvis[..., 1] - room).clip(0)
-    pose.pelvis[..., 1] -= smooth(widest(excess, 3), 1.6)
+    whole = level * excess.max(axis=1, keepdims=True)
+    pose.pelvis[..., 1] -= whole + smooth(widest((excess - whole).clip(0), 3), 1.6)
 
 
 def widest(x: NDArray, radius: int) -> NDArray:

@@ -14,7 +14,7 @@ MARGIN = 40
 """Frames by which a path is longer than the clip at either end: feet land ahead of the body."""
 
 # Pitch of a walking foot over one cycle that begins with heel strike, degrees.
-WALK_PITCH = ((0.0, -16), (0.09, 0), (0.36, 0), (0.60, 42), (0.68, 50), (0.88, -8), (1.0, -16))
+WALK_PITCH = ((0.0, -16), (0.09, 0), (0.32, 0), (0.60, 45), (0.70, 66), (0.90, -6), (1.0, -16))
 RUN_PITCH = ((0.0, -4), (0.06, 0), (0.16, 0), (0.34, 50), (0.50, 70), (0.85, 8), (1.0, -4))
 
 
@@ -132,14 +132,14 @@ def steps(gait: Gait, path: Path) -> tuple[NDArray, NDArray, NDArray]:
             left = np.stack([np.cos(heading), -np.sin(heading)], axis=-1)
             ahead = np.stack([np.sin(heading), np.cos(heading)], axis=-1)
             side = sign * gait.width[:, None, None] / 2
-            return place + side * left + 0.10 * ahead, heading + sign * 0.1
+            return place + side * left + 0.05 * ahead, heading + sign * 0.1
 
         here, facing = stand(number)
         there, facing_next = stand(number + 1)
         swing = ((cycle - duty) / (1 - duty)).clip(0, 1)
         share = 0.35 * ease(swing) + 0.65 * (0.5 - 0.5 * np.cos(np.pi * swing))
         toe[:, :, s, [0, 2]] = here + share[..., None] * (there - here)
-        toe[:, :, s, 1] = TOE_HEIGHT + gait.lift[:, None] * np.sin(np.pi * swing) ** 2
+        toe[:, :, s, 1] = TOE_HEIGHT + gait.lift[:, None] * np.sin(np.pi * swing**0.8) ** 1.5
         yaw[:, :, s] = facing + share * (facing_next - facing)
         pitch[:, :, s] = gait.pitch[:, None] * foot_pitch(cycle, gait.running)
     return toe, yaw, pitch
@@ -179,7 +179,7 @@ def walk_over(gait: Gait, path: Path, bones: NDArray) -> Pose:
         foot_pitch=pitch,
         hand=swinging_hands(gait, angle, bones),
     )
-    lower_into_reach(pose, bones)
+    lower_into_reach(pose, bones, level=0.9)
     return pose
 
 
