@@ -23,6 +23,12 @@ def seconds(frames: int) -> NDArray:
     return np.arange(frames)[None] / FPS
 
 
+def ease(s: NDArray) -> NDArray:
+    """From 0 to 1 with zero velocity and acceleration at both ends."""
+    s = s.clip(0, 1)
+    return s**3 * (10 - 15 * s + 6 * s**2)
+
+
 def hermite(t: NDArray, when: NDArray, value: NDArray, slope: NDArray | None = None) -> NDArray:
     """Piecewise cubic through knots, constant before the first and after the last.
 

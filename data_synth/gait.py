@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data_synth.body import TOE_HEIGHT, Pose, lower_into_reach, standing_height
+from data_synth.curves import ease
 from projflow_lite.skeleton import FPS
 
 MARGIN = 40
@@ -95,12 +96,6 @@ def path_of(velocity: NDArray, drift: NDArray, heading: NDArray) -> Path:
     step = (velocity[..., None] * ahead + drift[..., None] * left) / FPS
     place = np.cumsum(step, axis=1)
     return Path(place - place[:, MARGIN : MARGIN + 1], heading)
-
-
-def ease(s: NDArray) -> NDArray:
-    """From 0 to 1 with zero velocity and acceleration at both ends."""
-    s = s.clip(0, 1)
-    return s**3 * (10 - 15 * s + 6 * s**2)
 
 
 def foot_pitch(cycle: NDArray, running: bool) -> NDArray:
