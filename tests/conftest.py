@@ -8,6 +8,11 @@ from urllib.parse import urlparse
 
 import pytest
 from browser.install import ADVICE, find_browser
+from hypothesis import settings
+
+# Property tests draw the same cases in every run and are never failed for being slow.
+settings.register_profile("repeatable", deadline=None, derandomize=True)
+settings.load_profile("repeatable")
 
 ARTEFACTS = Path(__file__).parents[1] / "artefacts"
 FLAGS = [

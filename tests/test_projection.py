@@ -35,7 +35,7 @@ def dense_projection(x, rows, w_kin=10.0, ridge=1.0):
     return equations.project(x.ravel(), rows.A.toarray(), rows.y, R, np.diag(rows.variance))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(seed=st.integers(0, 10_000), std=st.sampled_from([0.0, 0.01, 0.3]))
 def test_equal_to_the_dense_formula(seed, std):
     rows = random_wish(seed, std).rows(FRAMES)
@@ -44,7 +44,7 @@ def test_equal_to_the_dense_formula(seed, std):
     np.testing.assert_allclose(fast.numpy().ravel(), dense_projection(x, rows), atol=1e-9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(
     seed=st.integers(0, 10_000),
     dtype=st.sampled_from([torch.float32, torch.float64]),

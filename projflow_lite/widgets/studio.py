@@ -22,12 +22,15 @@ Make = Callable[[str, str, NDArray[np.float64], str], Motion]
 
 VIEWS = {"front (x, y)": "xy", "side (z, y)": "zy", "from above (x, z)": "xz"}
 PROMPTS = (
+    "a person waves with the right hand",
     "a person stands still",
+    "a person reaches up with the right hand",
     "a person walks forward",
-    "a person waves with the left hand",
-    "a person reaches up",
+    "a person walks in a curve to the left",
+    "a person sidesteps to the left",
+    "a person runs forward",
     "a person squats",
-    "a person jumps",
+    "a person jumps forward",
 )
 DRAW_FIRST = "Draw a path in the left picture, or choose a shape below it."
 SETTLE = 0.05  # seconds to wait for more changes, so that many quick ones make one motion
