@@ -52,7 +52,7 @@ def run_train(options: argparse.Namespace) -> dict:
     from projflow_lite.prior.training import RECIPES, train
 
     if options.recipe not in RECIPES:
-        raise ValueError(f"train: '{options.recipe}' is not a recipe; try {', '.join(RECIPES)}")
+        raise ValueError(f"'{options.recipe}' is not a recipe; try {', '.join(RECIPES)}")
     torch.set_num_threads(options.threads)
     recipe = replace(RECIPES[options.recipe], seed=options.seed)
     if options.steps is not None:
@@ -70,7 +70,7 @@ def run_sample(options: argparse.Namespace) -> dict:
     from projflow_lite.samplers import sample
 
     if options.out.suffix not in (".npz", ".gif"):
-        raise ValueError(f"sample: --out ends in .npz or .gif, not '{options.out.suffix}'")
+        raise ValueError(f"--out ends in .npz or .gif, not '{options.out.suffix}'")
     prior = load_prior(options.prior)
     start = time.monotonic()
     motion = sample(

@@ -4,8 +4,8 @@ r"""The exact solve of ProjFlow eq. 7, fast enough to drag.
 
 The metric couples joints, never frames or axes: :math:`R^{-1} = I_N \otimes R_J^{-1} \otimes I_3`.
 So :math:`S = A R^{-1} A^\top + \Sigma` falls apart into small blocks of rows that share a frame and
-an axis. Each block is factorised once; what is left of every later projection is one sparse product
-with the gain :math:`G = R^{-1} A^\top S^{-1}`.
+an axis. Blocks are found once and inverted once; a later projection is two sparse products and a
+small matrix for each block. Where :math:`\Sigma` changes, only the blocks are solved anew.
 """
 
 from __future__ import annotations
@@ -61,27 +61,34 @@ class Projector:
         covariance = np.linalg.inv(check_metric(metric))
         self.keep = independent_rows(rows, covariance)
         rows = Rows(rows.A[self.keep], rows.y[self.keep], rows.variance[self.keep])
-        A, y, variance = rows
-        self.frames = A.shape[1] // (N_JOINTS * 3)
-        hard = variance == 0
-        self.A = SparseMap(A, dtype, device)
-        self.gain = SparseMap(gain_matrix(rows, covariance), dtype, device)
-        self.y = torch.as_tensor(y, dtype=dtype, device=device)
-        self.hard = torch.as_tensor(hard, dtype=dtype, device=device)
-        self.exact = np.flatnonzero(hard & is_coordinate(A))
-        self.pinned = torch.as_tensor(A.indices[A.indptr[self.exact]], device=device).long()
+        self.frames = rows.A.shape[1] // (N_JOINTS * 3)
+        self.A = SparseMap(rows.A, dtype, device)
+        self.spread = SparseMap(metric_times_rows(rows.A, covariance), dtype, device)
+        self.y = torch.as_tensor(rows.y, dtype=dtype, device=device)
+        self.hard = torch.as_tensor(rows.variance == 0, device=device)
+        self.exact = np.flatnonzero((rows.variance == 0) & is_coordinate(rows.A))
+        self.pinned = torch.as_tensor(
+            rows.A.indices[rows.A.indptr[self.exact]], device=device
+        ).long()
+        observed = observed_covariance(rows.A, covariance)
+        self.blocks = [
+            Block(observed, rows.variance, index, dtype, device) for index in blocks_of_rows(rows.A)
+        ]
 
-    def project(self, x1_hat: torch.Tensor) -> torch.Tensor:
+    def project(self, x1_hat: torch.Tensor, variance: torch.Tensor | None = None) -> torch.Tensor:
         """Move a motion, or a batch, the shortest way onto the rows.
 
         Args:
             x1_hat: ``(..., frames, 22, 3)`` metres.
+            variance: ``(m,)`` or ``(batch, m)`` square metres, instead of that of the rows:
+                infinity leaves a row out. Hard rows stay hard.
 
         Returns:
             The same shape. Pinned coordinates are bit-exact; gradients flow through.
 
         Raises:
-            ValueError: if the shape does not end in ``(frames, 22, 3)``.
+            ValueError: if the shape does not end in ``(frames, 22, 3)``, or the number of
+                variances is not the number of rows.
         """
         if x1_hat.shape[-3:] != (self.frames, N_JOINTS, 3):
             raise ValueError(
@@ -89,12 +96,24 @@ class Projector:
                 f"got {tuple(x1_hat.shape)}"
             )
         x = x1_hat.reshape(-1, self.frames * N_JOINTS * 3)
-        x = x + self.gain(self.y - self.A(x))
+        if variance is not None:
+            if variance.shape[-1] != self.given:
+                raise ValueError(f"Projector: {variance.shape[-1]} variances, {self.given} rows")
+            variance = torch.where(self.hard, 0.0, variance[..., self.keep]).expand(len(x), -1)
+        x = x + self.spread(self.solve(self.y - self.A(x), variance))
         # One step of iterative refinement: what rounding left over on the hard rows, removed.
-        x = x + self.gain((self.y - self.A(x)) * self.hard)
+        x = x + self.spread(self.solve((self.y - self.A(x)) * self.hard, variance))
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.y[..., self.exact].expand(len(x), -1)
         return x.index_copy(-1, self.pinned, exact).reshape(x1_hat.shape)
+
+    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
+        r"""Solve :math:`(A R^{-1} A^\top + \Sigma) z = r`, block by block, for ``(batch, m)``."""
+        z = torch.zeros_like(residual)
+        for block in self.blocks:
+            part = block.solve(residual, variance)
+            z = z.index_copy(1, block.index.flatten(), part.flatten(1))
+        return z
 
     def aimed_at(self, y: ArrayLike) -> Projector:
         """The same rows with other targets, one set for each motion of a batch.
@@ -116,6 +135,44 @@ class Projector:
         other = copy(self)
         other.y = targets
         return other
+
+
+class Block:
+    """Blocks of equal size, each coupling the rows of one frame and axis.
+
+    Args:
+        observed: ``(m, m)``, the matrix A R⁻¹ Aᵀ.
+        variance: ``(m,)`` of the rows.
+        index: ``(blocks, size)`` the rows of each block.
+        dtype: of the residuals that come later.
+        device: where they live.
+    """
+
+    def __init__(
+        self,
+        observed: sparse.csr_matrix,
+        variance: NDArray,
+        index: NDArray,
+        dtype: torch.dtype,
+        device: str | torch.device,
+    ) -> None:
+        dense = dense_blocks(observed, index)
+        inverse = np.linalg.inv(dense + variance[index][..., None] * np.eye(index.shape[1]))
+        self.index = torch.as_tensor(index, device=device)
+        self.dense = torch.as_tensor(dense, dtype=dtype, device=device)
+        self.inverse = torch.as_tensor(inverse, dtype=dtype, device=device)
+
+    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
+        """Solution ``(batch, blocks, size)`` for residuals ``(batch, m)``."""
+        r = residual[:, self.index]
+        if variance is None:
+            return torch.einsum("kij,bkj->bki", self.inverse, r)
+        v = variance[:, self.index]
+        active = torch.isfinite(v)
+        # A row without information is cut out: no coupling to the others, and no residual.
+        S = self.dense * (active[..., :, None] & active[..., None, :])
+        S = S + torch.diag_embed(torch.where(active, v, 1.0))
+        return torch.linalg.solve(S, (r * active).unsqueeze(-1)).squeeze(-1)
 
 
 class SparseMap:
@@ -163,9 +220,9 @@ def metric_times_rows(A: sparse.csr_matrix, covariance: NDArray) -> sparse.csr_m
     return (spread @ A.T).tocsr()
 
 
-def observed_covariance(rows: Rows, covariance: NDArray) -> sparse.csr_matrix:
-    r""":math:`S = A R^{-1} A^\top + \Sigma`, ``(m, m)``."""
-    return (rows.A @ metric_times_rows(rows.A, covariance) + sparse.diags(rows.variance)).tocsr()
+def observed_covariance(A: sparse.csr_matrix, covariance: NDArray) -> sparse.csr_matrix:
+    r""":math:`A R^{-1} A^\top`, ``(m, m)``."""
+    return (A @ metric_times_rows(A, covariance)).tocsr()
 
 
 def dense_blocks(S: sparse.csr_matrix, block: NDArray) -> NDArray:
@@ -175,27 +232,13 @@ def dense_blocks(S: sparse.csr_matrix, block: NDArray) -> NDArray:
     return np.asarray(entries).reshape(-1, size, size)
 
 
-def gain_matrix(rows: Rows, covariance: NDArray) -> sparse.csr_matrix:
-    r"""The gain :math:`G = R^{-1} A^\top (A R^{-1} A^\top + \Sigma)^{-1}`, ``(d, m)``."""
-    S = observed_covariance(rows, covariance)
-    row, column, value = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
-    for block in blocks_of_rows(rows.A):
-        size = block.shape[1]
-        row.append(np.repeat(block, size, axis=1).ravel())
-        column.append(np.tile(block, size).ravel())
-        value.append(np.linalg.inv(dense_blocks(S, block)).ravel())
-    index = (np.concatenate(row), np.concatenate(column))
-    inverse = sparse.csr_matrix((np.concatenate(value), index), S.shape)
-    return metric_times_rows(rows.A, covariance) @ inverse
-
-
 def independent_rows(rows: Rows, covariance: NDArray) -> NDArray:
     """Indices of the rows to keep: all but the hard rows that others already imply.
 
     Raises:
         ValueError: if a hard row contradicts the others.
     """
-    S = observed_covariance(rows, covariance)
+    S = (observed_covariance(rows.A, covariance) + sparse.diags(rows.variance)).tocsr()
     keep = np.ones(len(rows.y), dtype=bool)
     for block in blocks_of_rows(rows.A):
         dense = dense_blocks(S, block)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import torch
@@ -10,13 +10,14 @@ from numpy.typing import ArrayLike
 
 from projflow_lite.constraints import Wish
 from projflow_lite.motion import Motion
-from projflow_lite.projection import Projector
+from projflow_lite.projection import Projector, check_metric
 from projflow_lite.samplers.euler import euler
 from projflow_lite.samplers.guidance import guided
+from projflow_lite.samplers.guides import Guides, GuideSettings
 from projflow_lite.samplers.projflow import Step, Velocity, projflow
 from projflow_lite.skeleton import N_JOINTS
 
-__all__ = ["METHODS", "Step", "euler", "guided", "projflow", "sample"]
+__all__ = ["METHODS", "GuideSettings", "Guides", "Step", "euler", "guided", "projflow", "sample"]
 
 METHODS = {"projflow": projflow}
 """Methods that obey a wish, by the name that `sample` takes."""
@@ -33,6 +34,7 @@ def sample(
     *,
     batch: int | None = None,
     guidance: float = 1.5,
+    guides: bool | GuideSettings = True,
     metric: str | ArrayLike = "kinematic",
     dtype: torch.dtype = torch.float32,
     **options: Any,
@@ -51,6 +53,8 @@ def sample(
         method: a name of `METHODS`.
         batch: how many motions; None for one, without a batch dimension.
         guidance: how strongly the prompt is followed, see `guided`.
+        guides: whether sparse keyframes are helped by soft rows around them, see `Guides`; or the
+            constants to do it with.
         metric: of the projection, see `Projector`.
         dtype: of the sampler's arithmetic: torch.float32 or torch.float64.
         options: further arguments of the method, see its file in ``samplers/``.
@@ -68,7 +72,7 @@ def sample(
         )
     if hasattr(prior, "check_frames"):
         prior.check_frames(frames)
-    projector = None if wish is None else Projector(wish.rows(frames), metric, dtype)
+    project = None if wish is None else projection(wish, frames, metric, dtype, guides)
     generator = torch.Generator().manual_seed(seed)
     noise_std = getattr(prior, "noise_std", 1.0)
     shape = (batch or 1, frames, N_JOINTS, 3)
@@ -76,16 +80,44 @@ def sample(
     times = torch.linspace(0, 1, steps + 1, dtype=torch.float64).tolist()
     velocity = guided(prior, guidance)
     with torch.inference_mode():
-        if projector is None:
+        if project is None:
             x1 = euler(velocity, x0, times, prompt)
         else:
             x1 = METHODS[method](
-                velocity, projector.project, x0, times, generator, prompt,
+                velocity, project, x0, times, generator, prompt,
                 noise_std=noise_std, **options,
             )  # fmt: skip
     positions = x1.numpy() if batch is not None else x1[0].numpy()
     texts = prompt if prompt is None or isinstance(prompt, str) else list(prompt)
     return Motion(positions, texts, wish)  # type: ignore[arg-type]
+
+
+def projection(
+    wish: Wish,
+    frames: int,
+    metric: str | ArrayLike = "kinematic",
+    dtype: torch.dtype = torch.float32,
+    guides: bool | GuideSettings = True,
+) -> Callable[[torch.Tensor, float], torch.Tensor]:
+    """The step that moves a predicted motion onto a wish, as a function of the motion and time.
+
+    Args:
+        wish: what must hold.
+        frames: of the motion.
+        metric: see `Projector`.
+        dtype: of the motions.
+        guides: see `sample`.
+    """
+    rows = wish.rows(frames)
+    if not guides:
+        projector = Projector(rows, metric, dtype)
+        return lambda x1_hat, t: projector.project(x1_hat)
+    settings = guides if isinstance(guides, GuideSettings) else None
+    guide = Guides(rows, check_metric(metric), settings, dtype)
+    projector = Projector(guide.rows if len(guide) else rows, metric, dtype)
+    if not len(guide):
+        return lambda x1_hat, t: projector.project(x1_hat)
+    return lambda x1_hat, t: projector.project(x1_hat, guide.variance(x1_hat, t))
 
 
 def check_numbers(frames: int, steps: int, guidance: float, batch: int | None) -> None:

@@ -28,7 +28,7 @@ class Step(NamedTuple):
 
 def projflow(
     velocity: Velocity,
-    project: Callable[[torch.Tensor], torch.Tensor],
+    project: Callable[[torch.Tensor, float], torch.Tensor],
     x0: torch.Tensor,
     times: Sequence[float],
     generator: torch.Generator,
@@ -42,7 +42,8 @@ def projflow(
 
     Args:
         velocity: the flow, ``velocity(x_t, t, text)`` on ``(batch, frames, 22, 3)``.
-        project: moves a clean motion onto the wish, see `Projector.project`.
+        project: moves a clean motion onto the wish, given the time: `Projector.project`, with or
+            without guides.
         x0: noise to begin with, ``(batch, frames, 22, 3)``, metres.
         times: flow times from 0 to 1, rising.
         generator: where fresh noise is drawn from.
@@ -68,7 +69,7 @@ def projflow(
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)
         x1_hat = x_t + (1 - t) * v  # eq. 5
-        x1 = project(x1_hat)  # eq. 6-8
+        x1 = project(x1_hat, t)  # eq. 6-8
         source = x0 if noise == "original" else x_t - t * v
         fresh = noise_std * torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
         share = fresh_share(eta, t_next)

@@ -21,8 +21,8 @@ from data_synth import Clips, make_clips
 from projflow_lite import scores
 from projflow_lite.constraints import pin
 from projflow_lite.prior import Prior
-from projflow_lite.projection import Projector
-from projflow_lite.samplers import euler, guided, projflow
+from projflow_lite.projection import Projector, kinematic_joint_metric
+from projflow_lite.samplers import Guides, euler, guided, projflow
 from projflow_lite.skeleton import joint_index
 
 FRAMES = 60
@@ -60,15 +60,20 @@ def controlled(
     """
     frames = keyframes(keys)
     targets = clips.positions[:, frames][:, :, [joint_index(joint, "noise_reading")]]
-    projector = Projector(pin(joint, frames, targets[0, :, 0]).rows(FRAMES))
-    projector = projector.aimed_at(targets.reshape(len(targets), -1))
+    guides = Guides(pin(joint, frames, targets[0, :, 0]).rows(FRAMES), kinematic_joint_metric())
+    projector = Projector(guides.rows)
+    projector = projector.aimed_at(guides.targets(targets.reshape(len(targets), -1)))
+
+    def project(x1_hat: torch.Tensor, t: float) -> torch.Tensor:
+        return projector.project(x1_hat, guides.variance(x1_hat, t))
+
     generator = torch.Generator().manual_seed(seed)
     x0 = prior.noise_std * torch.randn(clips.positions.shape, generator=generator)
     times = torch.linspace(0, 1, steps + 1).tolist()
     with torch.inference_mode():
         field = guided(prior, guidance)
         x = projflow(
-            field, projector.project, x0, times, generator, clips.captions,
+            field, project, x0, times, generator, clips.captions,
             noise_std=prior.noise_std, **options,
         )  # fmt: skip
     return x.numpy()

@@ -1,0 +1,90 @@
+"""The shell commands, run as a person would, in this process."""
+
+import json
+
+import numpy as np
+import pytest
+
+import projflow_lite as pf
+from projflow_lite.cli import main
+from projflow_lite.exchange.pictures import camera, contact_sheet, film
+
+
+def test_train_then_sample_with_what_was_trained(tmp_path, capsys):
+    run = tmp_path / "run"
+    assert main(["train", "--recipe", "smoke", "--steps", "2", "--out", str(run)]) == 0
+    assert f"checkpoint: {run / 'prior.safetensors'}" in capsys.readouterr().out
+    out, numbers = tmp_path / "m.npz", tmp_path / "numbers.json"
+    command = ["sample", "a person walks", "--prior", str(run / "prior.safetensors")]
+    options = ["--steps", "2", "--frames", "48", "--out", str(out), "--json", str(numbers)]
+    assert main(command + options) == 0
+    assert pf.Motion.load(out).positions.shape == (48, 22, 3)
+    assert json.loads(numbers.read_text())["frames"] == 48
+
+
+def test_the_same_seed_trains_the_same_prior(tmp_path):
+    for name in ("a", "b"):
+        main(
+            [
+                "train",
+                "--recipe",
+                "smoke",
+                "--steps",
+                "2",
+                "--seed",
+                "3",
+                "--out",
+                str(tmp_path / name),
+            ]
+        )
+    a, b = ((tmp_path / name / "prior.safetensors").read_bytes() for name in ("a", "b"))
+    assert a == b
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        (
+            ["train", "--recipe", "clasroom"],
+            "projflow-lite train: 'clasroom' is not a recipe",
+        ),
+        (
+            ["sample", "x", "--out", "m.mp4"],
+            "projflow-lite sample: --out ends in .npz or .gif",
+        ),
+        (
+            ["sample", "x", "--prior", "nowhere"],
+            "projflow-lite sample: there is no checkpoint at nowhere",
+        ),
+    ],
+)
+def test_errors_are_one_line_and_the_status_is_not_zero(command, message, capsys):
+    assert main(command) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(message)
+    assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("command", [[], ["train"], ["sample"], ["reproduce"]])
+def test_every_command_has_help(command, capsys):
+    with pytest.raises(SystemExit) as stopped:
+        main([*command, "--help"])
+    assert stopped.value.code == 0
+    assert "usage: projflow-lite" in capsys.readouterr().out
+
+
+def test_the_camera_sees_the_left_hand_on_the_right_and_up_is_up():
+    left, up = camera(np.array([[1.0, 0, 0], [0, 1.0, 0]]), yaw=0, pitch=0)
+    np.testing.assert_allclose(left, [1, 0], atol=1e-12)
+    np.testing.assert_allclose(up, [0, 1], atol=1e-12)
+    from_above = camera(np.array([0.0, 1.0, 0.0]), yaw=0, pitch=90)
+    np.testing.assert_allclose(from_above, [0, 0], atol=1e-12)
+
+
+def test_pictures_are_written(tmp_path):
+    x = np.random.default_rng(0).normal(size=(6, 22, 3))
+    motion = pf.Motion(x, "a person waves", pf.pin("head", 1, [0, 1, 0]))
+    contact_sheet([motion, motion], tmp_path / "sheet.png", poses=3)
+    film(motion, tmp_path / "film.gif", trail="head")
+    assert (tmp_path / "sheet.png").stat().st_size > 5000
+    assert (tmp_path / "film.gif").read_bytes()[:6] == b"GIF89a"
