@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import linalg
 
 from projflow_lite.skeleton import FPS, check_positions, joint_indices
+
+STILL_SPEED, STILL_ACCELERATION = 0.03, 0.3
+"""m/s and m/s²: what a motion-capture marker on a standing foot shows. Less is not seen as less."""
 
 ENDS = joint_indices(["pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist"])
 
@@ -31,8 +33,9 @@ def frechet_distance(a: ArrayLike, b: ArrayLike) -> float:
             f"not {a.shape} and {b.shape}"
         )
     C_a, C_b = np.atleast_2d(np.cov(a.T)), np.atleast_2d(np.cov(b.T))
-    # tr (C_a C_b)^1/2 through a symmetric matrix, which has a real square root even if singular.
-    root = linalg.sqrtm(C_a).real
+    # tr (C_a C_b)^1/2 through symmetric matrices: their square roots are real even if singular.
+    size, axes = np.linalg.eigh(C_a)
+    root = (axes * np.sqrt(np.clip(size, 0, None))) @ axes.T
     cross = np.sqrt(np.clip(np.linalg.eigvalsh(root @ C_b @ root), 0, None)).sum()
     shift = a.mean(0) - b.mean(0)
     return float(shift @ shift + np.trace(C_a) + np.trace(C_b) - 2 * cross)
@@ -53,8 +56,8 @@ def kinetic_features(positions: NDArray, fps: float = FPS) -> NDArray:
     ends = check_positions(positions, "kinetic_features")[..., ENDS, :]
     speed = np.square(np.diff(ends, axis=-3) * fps).sum(-1).mean(-2)
     acceleration = np.square(np.diff(ends, 2, axis=-3) * fps**2).sum(-1).mean(-2)
-    # The floor of 1 mm/s keeps a foot that never moves finite.
-    return 0.5 * np.log(np.concatenate([speed, acceleration], axis=-1) + 1e-6)
+    floor = np.repeat([STILL_SPEED**2, STILL_ACCELERATION**2], len(ENDS))
+    return 0.5 * np.log(np.concatenate([speed, acceleration], axis=-1) + floor)
 
 
 def pose_features(positions: NDArray) -> NDArray:
