@@ -17,8 +17,9 @@ help:
 	@sed -n '1,7s/^# \{0,1\}//p' Makefile
 	@echo "also: make check (ruff and mypy), make hooks (for contributors), make pictures, make clean"
 
+# JupyterLab refuses to run as root, as in most containers, unless it is told to.
 lab: $(VENV)/.lab
-	$(BIN)/jupyter lab $(ARGS) $(NOTEBOOK)
+	$(BIN)/jupyter lab $(if $(filter 0,$(shell id -u)),--allow-root) $(ARGS) $(NOTEBOOK)
 
 test: $(VENV)/.test browser check
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(ARGS)
