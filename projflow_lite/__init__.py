@@ -29,7 +29,18 @@ _HOME = {
     "sample": "samplers",
     "view": "widgets",
 }
-_ROOMS = ("equations", "exchange", "prior", "samplers", "skeleton", "widgets")
+_ROOMS = (
+    "constraints",
+    "equations",
+    "exchange",
+    "prior",
+    "projection",
+    "samplers",
+    "scores",
+    "skeleton",
+    "studies",
+    "widgets",
+)
 
 __all__ = [
     "Motion",

@@ -44,6 +44,14 @@ from .inverse_problem import (
     unvectorise,
     vectorise,
 )
+from .known_answers import (
+    gaussian_endpoint,
+    gaussian_posterior,
+    gaussian_velocity,
+    log_density,
+    mixture_posterior,
+    mixture_velocity,
+)
 from .masks import (
     combined_observation,
     halo,
@@ -104,6 +112,9 @@ __all__ = [
     "flow_map",
     "flow_matching_loss",
     "frame_trust",
+    "gaussian_endpoint",
+    "gaussian_posterior",
+    "gaussian_velocity",
     "halo",
     "halo_radius",
     "implied_noise",
@@ -115,6 +126,7 @@ __all__ = [
     "kinematic_adjacency",
     "kinematic_laplacian",
     "kinematic_metric",
+    "log_density",
     "log_likelihood",
     "log_posterior_unnormalised",
     "log_prior",
@@ -129,6 +141,8 @@ __all__ = [
     "masked_observation",
     "masked_update",
     "mix_noise",
+    "mixture_posterior",
+    "mixture_velocity",
     "noise_mixing",
     "observation_mask",
     "observe",

@@ -171,6 +171,8 @@ class Trainer:
         random = torch.Generator().manual_seed(self.recipe.seed * 1_000_003 + self.step)
         with torch.autocast("cpu", torch.bfloat16, enabled=self.recipe.bfloat16):
             loss = loss_of(self.network, *self.batch(), random)
+        if not torch.isfinite(loss):
+            raise ValueError(f"train: the loss is {loss.item()} at step {self.step}; learn slower")
         self.optimiser.zero_grad()
         loss.backward()
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
