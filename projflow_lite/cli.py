@@ -30,7 +30,7 @@ def build_parser() -> argparse.ArgumentParser:
     sample.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     sample.add_argument("--frames", type=int, default=60)
     sample.add_argument("--steps", type=int, default=50)
-    sample.add_argument("--guidance", type=float, default=1.5)
+    sample.add_argument("--guidance", type=float, default=1.0)
     sample.add_argument("--seed", type=int, default=0)
     sample.add_argument("--json", type=Path, help="write length, time and residual to this file")
     sample.set_defaults(run=run_sample)
@@ -99,7 +99,7 @@ def run_reproduce(options: argparse.Namespace) -> dict:
     prior = load_prior(options.prior)
     if options.name == "contact-sheet":
         return {"written": [str(path) for path in contact_sheet.run(prior, options.out)]}
-    clips, seeds = (32, 2) if options.quick else (128, 3)
+    clips, seeds = (24, 2) if options.quick else (64, 3)
     rows = noise_reading.run(prior, clips, seeds)
     print(noise_reading.table(rows))
     return {"rows": rows}

@@ -84,7 +84,7 @@ def test_the_camera_sees_the_left_hand_on_the_right_and_up_is_up():
 def test_pictures_are_written(tmp_path):
     x = np.random.default_rng(0).normal(size=(6, 22, 3))
     motion = pf.Motion(x, "a person waves", pf.pin("head", 1, [0, 1, 0]))
-    contact_sheet([motion, motion], tmp_path / "sheet.png", poses=3)
+    contact_sheet([motion] * 3, tmp_path / "sheet.png", poses=3, columns=2)
     film(motion, tmp_path / "film.gif", trail="head")
     assert (tmp_path / "sheet.png").stat().st_size > 5000
     assert (tmp_path / "film.gif").read_bytes()[:6] == b"GIF89a"

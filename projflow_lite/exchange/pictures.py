@@ -55,6 +55,7 @@ def contact_sheet(
     path: str | Path,
     poses: int = 10,
     titles: Sequence[str] | None = None,
+    columns: int = 1,
 ) -> None:
     """Write one row of poses for every motion, left to right in time.
 
@@ -66,14 +67,17 @@ def contact_sheet(
         path: a ``.png``, ``.pdf`` or ``.svg`` file.
         poses: how many frames to show of each.
         titles: a line above each row; by default the prompt.
+        columns: how many motions stand side by side.
     """
     import matplotlib.pyplot as plt
 
     titles = titles or [str(motion.prompt or "") for motion in motions]
-    figure, rows = plt.subplots(
-        len(motions), 1, figsize=(poses * 1.05, 1.75 * len(motions)), squeeze=False
-    )
-    for motion, axes, title in zip(motions, rows[:, 0], titles, strict=True):
+    lines = -(-len(motions) // columns)
+    size = (poses * 0.6 * columns, 1.55 * lines)
+    figure, cells = plt.subplots(lines, columns, figsize=size, squeeze=False)
+    for axes in cells.flat[len(motions) :]:
+        axes.axis("off")
+    for motion, axes, title in zip(motions, cells.flat, titles, strict=False):
         draw_row(axes, motion, poses)
         axes.set_title(title, fontsize=9, loc="left", pad=1)
     figure.tight_layout(pad=0.3)
@@ -82,13 +86,17 @@ def contact_sheet(
 
 
 def draw_row(axes, motion: Motion, poses: int, gap: float = 0.95) -> None:
-    """Draw some poses of one motion side by side, each standing over its frame number."""
+    """Draw some poses of one motion side by side, over their frame numbers; pins are dots."""
     chosen = np.linspace(0, motion.frames - 1, poses).round().astype(int)
+    pins = None if motion.wish is None else motion.wish.markers(motion.frames)
     for place, frame in enumerate(chosen):
         pose = motion.positions[frame]
         ground = np.array([pose[0, 0], 0.0, pose[0, 2]])
         points = camera(pose - ground) + [place * gap, 0.0]
         draw_body(axes, points)
+        if pins is not None:
+            pinned = points[pins.joint[pins.frame == frame]]
+            axes.plot(*pinned.T, "o", color=MARK, ms=5, zorder=3)
         axes.text(
             place * gap, -0.32, f"{frame}", ha="center", va="top", fontsize=7, color="#777777"
         )

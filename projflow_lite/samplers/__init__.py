@@ -33,7 +33,7 @@ def sample(
     method: str = "projflow",
     *,
     batch: int | None = None,
-    guidance: float = 1.5,
+    guidance: float = 1.0,
     guides: bool | GuideSettings = True,
     metric: str | ArrayLike = "kinematic",
     dtype: torch.dtype = torch.float32,
@@ -52,7 +52,8 @@ def sample(
         seed: the same seed gives the same motion.
         method: a name of `METHODS`.
         batch: how many motions; None for one, without a batch dimension.
-        guidance: how strongly the prompt is followed, see `guided`.
+        guidance: how strongly the prompt is followed, see `guided`. The shipped prior follows at 1;
+            more exaggerates, and costs a second call of the network in every step.
         guides: whether sparse keyframes are helped by soft rows around them, see `Guides`; or the
             constants to do it with.
         metric: of the projection, see `Projector`.

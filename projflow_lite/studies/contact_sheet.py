@@ -48,7 +48,8 @@ def run(prior: Prior, folder: Path, frames: int = 60, seed: int = 0) -> list[Pat
     wished = sample(
         prior, heart_wish(frames), "a person waves with the right hand", frames, seed=seed
     )
-    contact_sheet(list(batch), folder / "actions.png")
-    contact_sheet(data, folder / "data.png")
+    prompts.append(f"{wished.prompt}; its wrist is pinned to a heart (dots)")
+    contact_sheet([*batch, wished], folder / "actions.png", titles=prompts, columns=2)
+    contact_sheet(data, folder / "data.png", columns=2)
     film(wished, folder / "heart.gif", yaw=15, trail="right_wrist")
     return [folder / name for name in ("actions.png", "data.png", "heart.gif")]

@@ -122,7 +122,7 @@ def repeat(make: Callable[[int], NDArray], reference: NDArray, seeds: int) -> di
 
 def run(
     prior: Prior,
-    clips: int = 128,
+    clips: int = 64,
     seeds: int = 3,
     steps: int = 50,
     joints: tuple[str, ...] = ("pelvis", "left_wrist"),
