@@ -32,13 +32,15 @@ def save_prior(prior: Prior, path: str | Path, dtype: torch.dtype = torch.float1
         for name, value in prior.state_dict().items()
     }
     about = {
+        "format": FORMAT,
         "words": prior.vocabulary.words,
         "noise_std": prior.noise_std,
         "lengths": prior.lengths,
         "network": prior.sizes,
         "recipe": prior.recipe,
     }
-    write(tensors, {"format": FORMAT, "prior": json.dumps(about)}, path)
+    # One key only: safetensors keeps several in no fixed order, and equal priors make equal files.
+    write(tensors, {"prior": json.dumps(about)}, path)
 
 
 def load_prior(path: str | Path | None = None) -> Prior:
@@ -52,9 +54,9 @@ def load_prior(path: str | Path | None = None) -> Prior:
         with as_file(files("projflow_lite.prior") / SHIPPED) as shipped:
             return load_prior(shipped)
     tensors, metadata = read(path)
-    if metadata.get("format") != FORMAT:
+    about = json.loads(metadata.get("prior", "{}"))
+    if about.get("format") != FORMAT:
         raise ValueError(f"load_prior: {path} is not a projflow_lite prior")
-    about = json.loads(metadata["prior"])
     prior = Prior(
         Vocabulary(about["words"]),
         tensors["mean"],
