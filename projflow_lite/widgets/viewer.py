@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import anywidget
 import numpy as np
@@ -16,23 +16,6 @@ from projflow_lite.widgets.front_end import float_bytes, module, pack
 
 CAMERA = {"yaw", "pitch", "distance", "target", "orthographic"}
 """Angles in radians, metres from the eye to the target, its x, y, z; without perspective?"""
-
-
-class MarkersLike(Protocol):
-    """What ``wish.markers(frames)`` returns: one entry for each marker to draw.
-
-    ``joint`` and ``frame`` are ``(k,)`` integers, ``target`` is ``(k, 3)`` in metres with NaN on
-    the axes that stay free, ``std`` is ``(k,)`` in metres, 0 for an exact wish.
-    """
-
-    @property
-    def joint(self) -> NDArray: ...  # noqa: D102
-    @property
-    def frame(self) -> NDArray: ...  # noqa: D102
-    @property
-    def target(self) -> NDArray: ...  # noqa: D102
-    @property
-    def std(self) -> NDArray: ...  # noqa: D102
 
 
 class Scene(NamedTuple):
@@ -206,7 +189,7 @@ def marker_records(motion: Motion) -> NDArray[np.float64]:
     wish: Any = motion.wish
     if wish is None:
         return np.empty((0, 7))
-    markers: MarkersLike = wish.markers(motion.frames)
+    markers = wish.markers(motion.frames)
     joint, frame = np.asarray(markers.joint, int), np.asarray(markers.frame, int)
     target = np.asarray(markers.target, float).reshape(len(joint), 3)
     batch = motion.positions.reshape(-1, *motion.positions.shape[-3:])
