@@ -181,7 +181,8 @@ def mixture_posterior(
         for w_k, m_k, C_k in zip(w, m, C, strict=True)
     ]
     parts = [gaussian_posterior(m_k, C_k, A, y, Sigma) for m_k, C_k in zip(m, C, strict=True)]
-    return (_normalise(np.array(evidence)), *(np.stack(part) for part in zip(*parts, strict=True)))
+    new_means, new_covariances = (np.stack(part) for part in zip(*parts, strict=True))
+    return _normalise(np.array(evidence)), new_means, new_covariances
 
 
 def _normalise(logs: NDArray) -> NDArray:
