@@ -22,6 +22,7 @@ Make = Callable[[str, str, NDArray[np.float64], str], Motion]
 
 VIEWS = {"front (x, y)": "xy", "side (z, y)": "zy", "from above (x, z)": "xz"}
 PROMPTS = (
+    "a person waves with the left hand",
     "a person waves with the right hand",
     "a person stands still",
     "a person reaches up with the right hand",

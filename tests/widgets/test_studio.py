@@ -43,7 +43,7 @@ def test_a_stroke_makes_one_motion(studio, calls):
     finish_stroke(studio)
     assert len(calls) == studio.runs == 1
     joint, plane, path, prompt = calls[0]
-    assert (joint, plane, prompt) == ("left_wrist", "xy", "a person stands still")
+    assert (joint, plane, prompt) == ("left_wrist", "xy", "a person waves with the left hand")
     np.testing.assert_allclose(path, PATH, atol=1e-6)
     assert studio.viewer.motion is studio.motion
     assert "10 frames in 0." in studio.status.value
