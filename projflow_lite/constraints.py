@@ -295,11 +295,10 @@ def check_frames(
     """Frames as an integer array (None stands for all of them), and whether it was just one."""
     if frames is None:
         return None, False
-    single = isinstance(frames, int | np.integer)
     listed = np.array([frames] if isinstance(frames, int | np.integer) else list(frames))
     if listed.ndim != 1 or len(listed) == 0 or listed.dtype.kind not in "iu":
         raise ValueError(f"{who}: frames is an integer or a list of integers, not {frames!r}")
-    return listed.astype(np.int64), single
+    return listed.astype(np.int64), isinstance(frames, int | np.integer)
 
 
 def inside(listed: NDArray, total: int, who: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import html
 import time
+import warnings
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -164,7 +165,9 @@ class WishStudio(widgets.VBox):
         self._say("sampling …", "pf-busy")
         start = time.perf_counter()
         try:
-            motion = self.make(self.joint.value, self.plane.value, path, self.prompt.value)
+            with warnings.catch_warnings(record=True) as heard:
+                warnings.simplefilter("always")
+                motion = self.make(self.joint.value, self.plane.value, path, self.prompt.value)
             seconds = time.perf_counter() - start
             self.viewer.show(motion)
         except Exception as error:  # anything at all: a traceback would vanish in a log
@@ -175,7 +178,9 @@ class WishStudio(widgets.VBox):
         self.motion, self.error = motion, None
         self.runs += 1
         self._show_reference()
-        self._say(report(motion, seconds))
+        # What was warned of, a word the prior never saw for example, would be lost in a log.
+        said = dict.fromkeys(str(warning.message) for warning in heard)
+        self._say(" · ".join([report(motion, seconds), *said]))
 
     def _say(self, text: str, kind: str = "") -> None:
         text = html.escape(text)

@@ -129,7 +129,7 @@ def test_the_body_travels_as_fast_as_it_says(clips, action):
 
 
 def test_walking_matches_real_walking():
-    """Medians of real walks: FACTS measured on motion capture, with room for our own spread."""
+    """Medians of real walks, measured on motion capture, with room for our own spread."""
     x = make_clips(200, seed=3, actions=["walk"]).positions.astype(float)
     pelvis = x[:, :, 0]
     bob = np.median([np.ptp(p[k : k + 11, 1]) for p in pelvis for k in range(0, 48, 12)])

@@ -63,6 +63,19 @@ def test_joint_prompt_and_button_run_again(studio, calls):
     assert studio.viewer.trail == [8]
 
 
+def test_a_warning_is_said_beside_the_result():
+    import warnings
+
+    def make(joint, plane, path, prompt):
+        warnings.warn("prompt: the prior never saw 'pirouettes'; left out", stacklevel=1)
+        return wished(walking(10, prompt=prompt), joint)
+
+    studio = WishStudio(make, samples=10)
+    finish_stroke(studio)
+    assert "10 frames in" in studio.status.value
+    assert studio.status.value.count("never saw") == 1
+
+
 def test_another_plane_waits_for_a_new_path(studio, calls):
     finish_stroke(studio)
     studio.plane.value = "xz"
