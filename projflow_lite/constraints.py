@@ -83,7 +83,9 @@ class Wish:
         Raises:
             ValueError: if a constraint names a frame that the motion does not have.
         """
-        parts = [term.build(frames) for term in self.terms]
+        if not isinstance(frames, int | np.integer) or frames < 1:
+            raise ValueError(f"rows: frames is a whole number of at least 1, not {frames!r}")
+        parts = [term.build(int(frames)) for term in self.terms]
         return Rows(
             sparse.vstack([part.A for part in parts], format="csr"),
             np.concatenate([part.y for part in parts]),
@@ -150,7 +152,7 @@ def pin(
     columns = check_axes(axes)
     check_std(std)
     listed, single_frame = check_frames(frames)
-    values = np.asarray(positions, dtype=np.float64)
+    values = check_numbers(positions, "pin: positions")
     shape = values.shape if not single_frame else (1, *values.shape)
     wanted = ("frames" if listed is None else len(listed), *([len(joints)] * several), len(axes))
     if (
@@ -201,7 +203,7 @@ def offset(
     if a == b:
         raise ValueError(f"offset: {JOINTS[a]} is named twice; an offset needs two joints")
     listed, _ = check_frames(frames, "offset")
-    vector = np.asarray(d, dtype=np.float64)
+    vector = check_numbers(d, "offset: d")
     count = "frames" if listed is None else len(listed)
     if vector.shape != (3,) and (vector.ndim != 2 or vector.shape[1] != 3):
         raise ValueError(f"offset: d should have shape (3,) or ({count}, 3), not {vector.shape}")
@@ -234,7 +236,7 @@ def loop(
         ValueError: for an unknown joint, or a shift that is not three finite numbers.
     """
     chosen = np.array(joint_indices(range(N_JOINTS) if joints is None else joints, "loop"))
-    vector = np.zeros(3) if shift is None else np.asarray(shift, dtype=np.float64)
+    vector = np.zeros(3) if shift is None else check_numbers(shift, "loop: shift")
     if vector.shape != (3,) or not np.isfinite(vector).all():
         raise ValueError(f"loop: shift should be three finite numbers, not {shift!r}")
 
@@ -283,6 +285,14 @@ def check_axes(axes: str) -> NDArray[np.int64]:
     return np.array([AXES.index(axis) for axis in axes])
 
 
+def check_numbers(value: ArrayLike, what: str) -> NDArray[np.float64]:
+    """An array of numbers, or an error that says what is not one."""
+    try:
+        return np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{what} should be a regular array of numbers") from None
+
+
 def check_std(std: float) -> None:
     """Refuse a standard deviation that is negative or not finite."""
     if not isinstance(std, int | float | np.number) or not 0 <= std < np.inf:
@@ -295,6 +305,8 @@ def check_frames(
     """Frames as an integer array (None stands for all of them), and whether it was just one."""
     if frames is None:
         return None, False
+    if not isinstance(frames, int | np.integer | Iterable):
+        raise ValueError(f"{who}: frames is an integer or a list of integers, not {frames!r}")
     listed = np.array([frames] if isinstance(frames, int | np.integer) else list(frames))
     if listed.ndim != 1 or len(listed) == 0 or listed.dtype.kind not in "iu":
         raise ValueError(f"{who}: frames is an integer or a list of integers, not {frames!r}")

@@ -94,7 +94,12 @@ def joint_indices(joints: str | int | Iterable[str | int], who: str = "joint_ind
     """Indices of one or several joints; see `joint_index`."""
     if isinstance(joints, str | int | np.integer):
         joints = [joints]
-    return [joint_index(joint, who) for joint in joints]
+    if not isinstance(joints, Iterable):
+        raise ValueError(f"{who}: a joint is a name or an integer, not {joints!r}")
+    indices = [joint_index(joint, who) for joint in joints]
+    if not indices:
+        raise ValueError(f"{who}: the list of joints is empty")
+    return indices
 
 
 def bone_lengths(positions: NDArray) -> NDArray:

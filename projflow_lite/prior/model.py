@@ -108,6 +108,8 @@ def as_prompts(text: Text, batch: int) -> list[str | None]:
     """
     if text is None or isinstance(text, str):
         return [text] * batch
+    if not isinstance(text, Sequence) or not all(p is None or isinstance(p, str) for p in text):
+        raise ValueError(f"prompt: a prompt is a text, or a list of them, not {text!r}")
     prompts = list(text)
     if len(prompts) != batch:
         raise ValueError(f"prompt: {len(prompts)} prompts for {batch} motions")

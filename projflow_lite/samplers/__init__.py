@@ -64,13 +64,8 @@ def sample(
         ValueError: for a wish that does not fit the motion or contradicts itself, an unknown
             method, or numbers that make no sense.
     """
-    check_numbers(frames, steps, guidance, batch)
-    if method not in METHODS:
-        raise ValueError(f"sample: method is one of {', '.join(METHODS)}, not '{method}'")
-    if wish is not None and not isinstance(wish, Wish):
-        raise ValueError(
-            f"sample: wish is made by pin, offset or loop, not a {type(wish).__name__}"
-        )
+    check_numbers(frames, steps, guidance, batch, seed)
+    check_choices(prior, wish, method, dtype, guides)
     if hasattr(prior, "check_frames"):
         prior.check_frames(frames)
     project = None if wish is None else projection(wish, frames, metric, dtype, guides)
@@ -121,10 +116,34 @@ def projection(
     return lambda x1_hat, t: projector.project(x1_hat, guide.variance(x1_hat, t))
 
 
-def check_numbers(frames: int, steps: int, guidance: float, batch: int | None) -> None:
-    """Refuse a count below 1, or a guidance that is not a number."""
+def check_numbers(frames: int, steps: int, guidance: float, batch: int | None, seed: int) -> None:
+    """Refuse a count below 1, or a guidance or seed that is not a number."""
     for name, value in (("frames", frames), ("steps", steps), ("batch", batch)):
         if value is not None and (not isinstance(value, int) or value < 1):
             raise ValueError(f"sample: {name} is a whole number of at least 1, not {value!r}")
-    if not -100 < guidance < 100:
+    if not isinstance(guidance, int | float) or not -100 < guidance < 100:
         raise ValueError(f"sample: guidance is a number, usually 0 to 5, not {guidance!r}")
+    if not isinstance(seed, int):
+        raise ValueError(f"sample: seed is a whole number, not {seed!r}")
+
+
+def check_choices(
+    prior: Velocity,
+    wish: Wish | None,
+    method: str,
+    dtype: torch.dtype,
+    guides: bool | GuideSettings,
+) -> None:
+    """Refuse what is not a prior, a wish, a method, a precision or a setting of guides."""
+    if not callable(prior):
+        raise ValueError("sample: prior is a callable velocity(x_t, t, text); try pf.load_prior()")
+    if wish is not None and not isinstance(wish, Wish):
+        raise ValueError(
+            f"sample: wish is made by pin, offset or loop, not a {type(wish).__name__}"
+        )
+    if method not in METHODS:
+        raise ValueError(f"sample: method is one of {', '.join(METHODS)}, not '{method}'")
+    if dtype not in (torch.float32, torch.float64):
+        raise ValueError(f"sample: dtype is torch.float32 or torch.float64, not {dtype}")
+    if not isinstance(guides, bool | GuideSettings):
+        raise ValueError(f"sample: guides is True, False or GuideSettings(...), not {guides!r}")

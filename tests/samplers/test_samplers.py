@@ -150,6 +150,17 @@ WRONG = [
         lambda: sample(noise="orignal", wish=pf.loop()),
         "projflow: noise is 'original' or 'implied', not 'orignal'",
     ),
+    (
+        lambda: pf.sample(None),
+        "sample: prior is a callable velocity(x_t, t, text); try pf.load_prior()",
+    ),
+    (lambda: sample(seed="a"), "sample: seed is a whole number, not 'a'"),
+    (
+        lambda: sample(dtype=torch.int32),
+        "sample: dtype is torch.float32 or torch.float64, not torch.int32",
+    ),
+    (lambda: sample(guides=3), "sample: guides is True, False or GuideSettings(...), not 3"),
+    (lambda: sample(guidance="x"), "sample: guidance is a number, usually 0 to 5, not 'x'"),
     (lambda: sample(eta=1.5, wish=pf.loop()), "projflow: eta is a share of 0 to 1, not 1.5"),
 ]
 
