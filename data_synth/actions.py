@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data_synth import in_place, jumping, locomotion
-from data_synth.body import Pose
+from data_synth.body import Made
 
-Maker = Callable[[np.random.Generator, int, int, NDArray], tuple[Pose, dict[str, NDArray]]]
+Maker = Callable[[np.random.Generator, int, int, NDArray], Made]
 
 MAKERS: dict[str, Maker] = {
     "walk": locomotion.walk,

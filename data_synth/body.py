@@ -83,6 +83,10 @@ class Pose:
     hand: NDArray
 
 
+Made = tuple[Pose, dict[str, NDArray]]
+"""What an action makes: a pose, and the parameters that were drawn, ``(n,)`` each."""
+
+
 def turn(yaw: NDArray, pitch: NDArray | float = 0.0, roll: NDArray | float = 0.0) -> NDArray:
     """Rotations ``(..., 3, 3)``: first roll about z, then pitch about x, then yaw about y."""
     yaw, pitch, roll = np.broadcast_arrays(yaw, pitch, roll)

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from data_synth.body import Pose
+from data_synth.body import Made, Pose
 from data_synth.curves import coin, ease, hold, seconds, uniform, wander
 from data_synth.standing import arm_reach, move_hand, settle, stand
 from projflow_lite.skeleton import FPS
-
-Made = tuple[Pose, dict[str, NDArray]]
 
 
 def squat(random: np.random.Generator, n: int, frames: int, bones: NDArray) -> Made:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from data_synth.body import Pose
+from data_synth.body import Made, Pose
 from data_synth.curves import ease, hermite, seconds, uniform
 from data_synth.standing import settle, stand
 from projflow_lite.skeleton import FPS
@@ -75,9 +75,7 @@ def pelvis_height(
     return np.where(flying, top + flight, y), flight
 
 
-def jump(
-    random: np.random.Generator, n: int, frames: int, bones: NDArray
-) -> tuple[Pose, dict[str, NDArray]]:
+def jump(random: np.random.Generator, n: int, frames: int, bones: NDArray) -> Made:
     """Jump in place or ahead."""
     pose, t = stand(random, n, frames, bones), seconds(frames)
     when = plan(random, n, frames)

@@ -5,13 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from data_synth.body import Pose, standing_height
+from data_synth.body import Made, Pose, standing_height
 from data_synth.curves import coin, uniform, wander
 from data_synth.gait import MARGIN, Gait, Path, path_of, walk_over
 from data_synth.in_place import wave_hands
 from projflow_lite.skeleton import FPS
-
-Made = tuple[Pose, dict[str, NDArray]]
 
 
 def stretch(bones: NDArray) -> NDArray:

@@ -105,14 +105,12 @@ def projection(
         guides: see `sample`.
     """
     rows = wish.rows(frames)
-    if not guides:
+    settings = guides if isinstance(guides, GuideSettings) else None
+    guide = Guides(rows, check_metric(metric), settings, dtype) if guides else None
+    if not guide:  # none wanted, or no frame between keyframes
         projector = Projector(rows, metric, dtype)
         return lambda x1_hat, t: projector.project(x1_hat)
-    settings = guides if isinstance(guides, GuideSettings) else None
-    guide = Guides(rows, check_metric(metric), settings, dtype)
-    projector = Projector(guide.rows if len(guide) else rows, metric, dtype)
-    if not len(guide):
-        return lambda x1_hat, t: projector.project(x1_hat)
+    projector = Projector(guide.rows, metric, dtype)
     return lambda x1_hat, t: projector.project(x1_hat, guide.variance(x1_hat, t))
 
 

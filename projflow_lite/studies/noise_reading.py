@@ -23,7 +23,7 @@ from projflow_lite import scores
 from projflow_lite.constraints import pin
 from projflow_lite.prior import Prior
 from projflow_lite.projection import Projector, kinematic_joint_metric
-from projflow_lite.samplers import Guides, euler, guided, projflow
+from projflow_lite.samplers import Guides, guided, projflow, sample
 from projflow_lite.skeleton import joint_index
 
 FRAMES = 60
@@ -87,11 +87,9 @@ def held_out(clips: int, seed: int) -> NDArray:
 
 def free(prior: Prior, clips: Clips, guidance: float, steps: int, seed: int) -> NDArray:
     """Generate one motion for every prompt, without a wish."""
-    generator = torch.Generator().manual_seed(seed)
-    x0 = prior.noise_std * torch.randn(clips.positions.shape, generator=generator)
-    times = torch.linspace(0, 1, steps + 1).tolist()
-    with torch.inference_mode():
-        return euler(guided(prior, guidance), x0, times, clips.captions).numpy()
+    texts = clips.captions
+    motion = sample(prior, None, texts, FRAMES, steps, seed, batch=len(texts), guidance=guidance)
+    return motion.positions
 
 
 def score(positions: NDArray, reference: NDArray) -> dict[str, float]:
