@@ -34,6 +34,12 @@ class GuideSettings:
         lambda_s, p: how much curvature lowers the trust (eq. 15).
         pi_min, pi_max: bounds of the trust (eq. 52). Table 5 has 1 for the upper one, which makes
             early guides as hard as keyframes; at 0.99 they stay soft.
+        form: "printed" as in the paper, or "released" as in its public code: the lower median of
+            the curvatures (eq. 15), squared norms (eq. 51), and a budget that is clipped before it
+            is shared out as well as after (eq. 52).
+
+    Raises:
+        ValueError: for another form, or bounds that are not 0 < pi_min <= pi_max <= 1.
     """
 
     l_min: float = 3.0
@@ -44,6 +50,16 @@ class GuideSettings:
     p: float = 2.0
     pi_min: float = 0.02
     pi_max: float = 0.99
+    form: str = "printed"
+
+    def __post_init__(self) -> None:
+        if self.form not in ("printed", "released"):
+            raise ValueError(f"guides: form is 'printed' or 'released', not {self.form!r}")
+        if not 0 < self.pi_min <= self.pi_max <= 1:
+            raise ValueError(
+                "guides: trust is bounded by 0 < pi_min <= pi_max <= 1, "
+                f"not {self.pi_min} and {self.pi_max}"
+            )
 
 
 class Guides:
@@ -80,7 +96,7 @@ class Guides:
         as_tensor = lambda value: torch.tensor(np.array(value), dtype=dtype)  # noqa: E731
         self.frame, self.joint = torch.as_tensor(frame), torch.as_tensor(joint)
         self.distance = as_tensor(place.distance)
-        self.R_J, self.q = as_tensor(R_J), as_tensor(influence_weights(R_J))
+        self.R_J, self.q = as_tensor(R_J), as_tensor(influence_weights(R_J, self.settings.form))
         self.r = as_tensor(marginal_variance(R_J))
         self.given = as_tensor(rows.variance)
 
@@ -103,6 +119,8 @@ class Guides:
         c = self.settings
         near = self.distance < (1 - t) * c.l_max + t * c.l_min  # eq. 14
         budget = self.frame_trust(x1_hat, t)[:, self.frame]
+        if c.form == "released":
+            budget = budget.clamp(c.pi_min, c.pi_max)
         active = torch.zeros(self.frames, N_JOINTS, dtype=self.q.dtype)
         active[self.frame[near], self.joint[near]] = 1.0
         total = (active * self.q).sum(1)[self.frame].clamp(min=1e-12)
@@ -120,7 +138,8 @@ class Guides:
             bend = x1_hat.diff(n=2, dim=1)
             s = torch.einsum("bnjc,jk,bnkc->bn", bend, self.R_J, bend).clamp(min=0).sqrt()  # eq. 17
             s = torch.cat([s[:, :1], s, s[:, -1:]], dim=1)
-            middle = s.quantile(0.5, dim=1, keepdim=True)
+            median = "midpoint" if c.form == "printed" else "lower"
+            middle = s.quantile(0.5, dim=1, keepdim=True, interpolation=median)
             ratio = torch.where(s > 0, s / middle, 0.0)
         tau = c.tau_min + (1 - c.tau_min) * (1 - t)  # eq. 16
         return tau * c.c0 / (1 + c.lambda_s * ratio**c.p)  # eq. 15

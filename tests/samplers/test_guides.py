@@ -1,5 +1,7 @@
 """Guides between keyframes: the batched fast path against the equations, frame by frame."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -24,7 +26,7 @@ def observed_and_values():
     return observed, (A.T @ y).reshape(FRAMES, 22, 3)
 
 
-def variance_by_the_equations(x1_hat, t):
+def variance_by_the_equations(x1_hat, t, form):
     """Variance of every coordinate, infinite where nothing guides, ``(frames, 22, 3)``."""
     c = SETTINGS
     observed, _ = observed_and_values()
@@ -38,9 +40,9 @@ def variance_by_the_equations(x1_hat, t):
                     len(keys) > 0 and not observed[n, j, k] and np.abs(keys - n).min() < radius
                 )
     s = equations.curvature(x1_hat, R_J)
-    trust = equations.frame_trust(s, t, c.c0, c.lambda_s, c.p, c.tau_min)
-    q = equations.influence_weights(R_J)
-    pi = equations.joint_trust(trust, q, near.any(axis=2), c.pi_min, c.pi_max)
+    trust = equations.frame_trust(s, t, c.c0, c.lambda_s, c.p, c.tau_min, form)
+    q = equations.influence_weights(R_J, form)
+    pi = equations.joint_trust(trust, q, near.any(axis=2), c.pi_min, c.pi_max, form)
     r = np.diag(np.linalg.inv(R_J))
     variance = np.full(observed.shape, np.inf)
     for n, j, k in np.argwhere(near):
@@ -48,16 +50,17 @@ def variance_by_the_equations(x1_hat, t):
     return variance
 
 
+@pytest.mark.parametrize("form", ["printed", "released"])
 @pytest.mark.parametrize("t", [0.0, 0.37, 0.8, 0.99])
-def test_variances_are_those_of_the_equations(t):
-    guides = Guides(WISH.rows(FRAMES), R_J, SETTINGS, torch.float64)
+def test_variances_are_those_of_the_equations(t, form):
+    guides = Guides(WISH.rows(FRAMES), R_J, replace(SETTINGS, form=form), torch.float64)
     x = np.random.default_rng(0).normal(size=(2, FRAMES, 22, 3)).cumsum(1)
     ours = guides.variance(torch.as_tensor(x), t).numpy()
     m = len(WISH.rows(FRAMES).y)
     assert not ours[:, :m].any()
     columns = guides.rows.A.indices[m:]
     for clip in range(2):
-        expected = variance_by_the_equations(x[clip], t).ravel()
+        expected = variance_by_the_equations(x[clip], t, form).ravel()
         np.testing.assert_allclose(ours[clip, m:], expected[columns], rtol=1e-10)
         assert np.isfinite(ours[clip, m:]).sum() == np.isfinite(expected).sum()
 
@@ -122,3 +125,25 @@ def test_guides_take_the_neighbours_of_a_keyframe_along_and_let_them_go_later():
     assert early[14] > 0.25 > late[14] > 0.01
     assert early[7] > 0.25
     assert late[7] == 0
+
+
+def test_the_two_forms_differ_where_joints_share_a_budget():
+    x = torch.randn(1, FRAMES, 22, 3, generator=torch.Generator().manual_seed(0)).cumsum(1)
+    printed = Guides(WISH.rows(FRAMES), R_J, GuideSettings()).variance(x, 0.1)
+    released = Guides(WISH.rows(FRAMES), R_J, GuideSettings(form="released")).variance(x, 0.1)
+    assert torch.isinf(printed).equal(torch.isinf(released))
+    active = torch.isfinite(printed) & (printed > 0)
+    assert (released / printed)[active].max() > 1.5
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"form": "derived"}, "guides: form is 'printed' or 'released', not 'derived'"),
+        ({"pi_min": 0.0}, "guides: trust is bounded by 0 < pi_min <= pi_max <= 1"),
+        ({"pi_max": 1.5}, "guides: trust is bounded by 0 < pi_min <= pi_max <= 1"),
+    ],
+)
+def test_settings_that_make_no_sense_are_refused(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        GuideSettings(**wrong)
