@@ -7,7 +7,21 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from projflow_lite.constraints import Rows, Wish, loop, offset, pin
+    from projflow_lite.constraints import (
+        Orthographic,
+        Perspective,
+        Rows,
+        Wish,
+        acceleration,
+        centre_of_mass,
+        keep,
+        lift,
+        loop,
+        offset,
+        pin,
+        rows,
+        velocity,
+    )
     from projflow_lite.motion import Motion
     from projflow_lite.prior import Prior, load_prior
     from projflow_lite.projection import Projector
@@ -18,19 +32,29 @@ __version__ = "0.1.0"
 
 _HOME = {
     "Motion": "motion",
+    "Orthographic": "constraints",
+    "Perspective": "constraints",
     "Prior": "prior",
     "Projector": "projection",
     "Rows": "constraints",
     "Wish": "constraints",
+    "acceleration": "constraints",
+    "centre_of_mass": "constraints",
+    "keep": "constraints",
+    "lift": "constraints",
     "load_prior": "prior",
     "loop": "constraints",
     "offset": "constraints",
     "pin": "constraints",
+    "rows": "constraints",
     "sample": "samplers",
+    "velocity": "constraints",
     "view": "widgets",
 }
 _ROOMS = (
+    "classroom",
     "constraints",
+    "derivations",
     "equations",
     "exchange",
     "prior",
@@ -44,15 +68,23 @@ _ROOMS = (
 
 __all__ = [
     "Motion",
+    "Orthographic",
+    "Perspective",
     "Prior",
     "Projector",
     "Rows",
     "Wish",
+    "acceleration",
+    "centre_of_mass",
+    "keep",
+    "lift",
     "load_prior",
     "loop",
     "offset",
     "pin",
+    "rows",
     "sample",
+    "velocity",
     "view",
 ]
 

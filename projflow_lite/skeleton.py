@@ -66,6 +66,40 @@ MIRROR: tuple[int, ...] = tuple(
 )
 """The joint on the other side of the body; joints of the spine map to themselves."""
 
+LOWER_BODY: tuple[str, ...] = tuple(
+    name for name in JOINTS if name.endswith(("pelvis", "hip", "knee", "ankle", "foot"))
+)
+"""Pelvis and legs."""
+
+UPPER_BODY: tuple[str, ...] = tuple(name for name in JOINTS if name not in LOWER_BODY)
+"""Spine, head and arms."""
+
+# Share of a body's mass in each segment, the joints at its ends, and how far along it its centre
+# lies: Winter, Biomechanics and Motor Control of Human Movement; a hand counts at its wrist.
+SEGMENTS = (
+    (0.0145, "ankle", "foot", 0.500), (0.0465, "knee", "ankle", 0.433),
+    (0.1000, "hip", "knee", 0.433), (0.0280, "shoulder", "elbow", 0.436),
+    (0.0160, "elbow", "wrist", 0.430), (0.0060, "wrist", "wrist", 0.0),
+)  # fmt: skip
+TRUNK = {"pelvis": 0.142, "spine1": 0.0695, "spine2": 0.0695, "spine3": 0.108, "neck": 0.108}
+HEAD = {"head": 0.081}
+
+
+def mass_shares() -> NDArray[np.float64]:
+    """Share of the body's mass that counts at every joint, ``(22,)``, summing to 1."""
+    share = np.zeros(N_JOINTS)
+    for name, part in (TRUNK | HEAD).items():
+        share[JOINTS.index(name)] += part
+    for side in ("left", "right"):
+        for part, near, far, along in SEGMENTS:
+            share[JOINTS.index(f"{side}_{near}")] += part * (1 - along)
+            share[JOINTS.index(f"{side}_{far}")] += part * along
+    return share
+
+
+MASS: tuple[float, ...] = tuple(mass_shares())
+"""Share of the body's mass at every joint: ``MASS @ positions`` is the centre of mass."""
+
 
 def joint_index(joint: str | int, who: str = "joint_index") -> int:
     """Index of one joint, from its name or from the index itself.
