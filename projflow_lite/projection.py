@@ -4,8 +4,9 @@ r"""The exact solve of ProjFlow eq. 7, fast enough to drag.
 
 The metric couples joints, never frames or axes: :math:`R^{-1} = I_N \otimes R_J^{-1} \otimes I_3`.
 So :math:`S = A R^{-1} A^\top + \Sigma` falls apart into small blocks of rows that share a frame and
-an axis. Blocks are found once and inverted once; a later projection is two sparse products and a
-small matrix for each block. Where :math:`\Sigma` changes, only the blocks are solved anew.
+an axis. Blocks are found once and inverted once; a later projection is two sparse products, a
+small matrix for each block and one 22 x 22 product for each frame. Where :math:`\Sigma` changes,
+only the blocks are inverted anew.
 """
 
 from __future__ import annotations
@@ -23,7 +24,6 @@ from projflow_lite.row_blocks import (
     blocks_of_rows,
     dense_blocks,
     independent_rows,
-    metric_times_rows,
     observed_covariance,
 )
 from projflow_lite.skeleton import EDGES, N_JOINTS
@@ -63,7 +63,8 @@ class Projector:
         rows = Rows(rows.A[self.keep], rows.y[self.keep], rows.variance[self.keep])
         self.frames = rows.A.shape[1] // (N_JOINTS * 3)
         self.A = SparseMap(rows.A, dtype, device)
-        self.spread = SparseMap(metric_times_rows(rows.A, covariance), dtype, device)
+        self.back = SparseMap(rows.A.T.tocsr()[joints_last(self.frames)], dtype, device)
+        self.covariance = torch.as_tensor(covariance, dtype=dtype, device=device)
         self.y = torch.as_tensor(rows.y, dtype=dtype, device=device)
         self.hard = torch.as_tensor(rows.variance == 0, device=device)
         self.exact = np.flatnonzero((rows.variance == 0) & is_coordinate(rows.A))
@@ -100,20 +101,26 @@ class Projector:
             if variance.shape[-1] != self.given:
                 raise ValueError(f"Projector: {variance.shape[-1]} variances, {self.given} rows")
             variance = torch.where(self.hard, 0.0, variance[..., self.keep]).expand(len(x), -1)
-        x = x + self.spread(self.solve(self.y - self.A(x), variance))
+        inverses = [block.inverse_for(variance) for block in self.blocks]
+        x = x + self.spread(self.solve(self.y - self.A(x), inverses))
         # One step of iterative refinement: what rounding left over on the hard rows, removed.
-        x = x + self.spread(self.solve((self.y - self.A(x)) * self.hard, variance))
+        x = x + self.spread(self.solve((self.y - self.A(x)) * self.hard, inverses))
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.y[..., self.exact].expand(len(x), -1)
         return x.index_copy(-1, self.pinned, exact).reshape(x1_hat.shape)
 
-    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
+    def solve(self, residual: torch.Tensor, inverses: list[torch.Tensor]) -> torch.Tensor:
         r"""Solve :math:`(A R^{-1} A^\top + \Sigma) z = r`, block by block, for ``(batch, m)``."""
         z = torch.zeros_like(residual)
-        for block in self.blocks:
-            part = block.solve(residual, variance)
+        for block, inverse in zip(self.blocks, inverses, strict=True):
+            part = (inverse * residual[:, block.index].unsqueeze(-2)).sum(-1)
             z = z.index_copy(1, block.index.flatten(), part.flatten(1))
         return z
+
+    def spread(self, z: torch.Tensor) -> torch.Tensor:
+        r"""Apply :math:`R^{-1} A^\top` to ``(batch, m)``: put it on the joints, let it spread."""
+        pulled = self.back(z).view(len(z), self.frames, 3, N_JOINTS)
+        return (pulled @ self.covariance).mT.flatten(1)
 
     def aimed_at(self, y: ArrayLike) -> Projector:
         """The same rows with other targets, one set for each motion of a batch.
@@ -135,6 +142,11 @@ class Projector:
         other = copy(self)
         other.y = targets
         return other
+
+
+def joints_last(frames: int) -> NDArray:
+    """Coordinates of a motion in the order (frame, axis, joint), in which the metric is a block."""
+    return np.arange(frames * N_JOINTS * 3).reshape(frames, N_JOINTS, 3).swapaxes(1, 2).ravel()
 
 
 class Block:
@@ -162,17 +174,43 @@ class Block:
         self.dense = torch.as_tensor(dense, dtype=dtype, device=device)
         self.inverse = torch.as_tensor(inverse, dtype=dtype, device=device)
 
-    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
-        """Solution ``(batch, blocks, size)`` for residuals ``(batch, m)``."""
-        r = residual[:, self.index]
+    def inverse_for(self, variance: torch.Tensor | None) -> torch.Tensor:
+        """Inverse of every block, ``(blocks, size, size)``, or one set for each motion.
+
+        Args:
+            variance: ``(batch, m)``, or None for that of the rows.
+        """
         if variance is None:
-            return torch.einsum("kij,bkj->bki", self.inverse, r)
+            return self.inverse
         v = variance[:, self.index]
         active = torch.isfinite(v)
-        # A row without information is cut out: no coupling to the others, and no residual.
-        S = self.dense * (active[..., :, None] & active[..., None, :])
-        S = S + torch.diag_embed(torch.where(active, v, 1.0))
-        return torch.linalg.solve(S, (r * active).unsqueeze(-1)).squeeze(-1)
+        # A row without information is cut out: it neither couples to the others nor acts.
+        mask = active[..., :, None] & active[..., None, :]
+        S = self.dense * mask + torch.diag_embed(torch.where(active, v, 1.0))
+        return invert(S) * mask
+
+
+LARGEST_IN_LOCKSTEP = 12
+
+
+def invert(S: torch.Tensor) -> torch.Tensor:
+    """Invert positive definite matrices ``(..., n, n)``.
+
+    A projection has hundreds of small ones, and a call of LAPACK for each costs more than its
+    arithmetic. So small ones are eliminated (Gauss and Jordan) all at once, column by column;
+    being positive definite, they need no pivoting.
+    """
+    n = S.shape[-1]
+    if n > LARGEST_IN_LOCKSTEP:
+        return torch.linalg.inv(S)
+    inverse = torch.eye(n, dtype=S.dtype, device=S.device).expand_as(S)
+    for k in range(n):
+        pivot = S[..., k : k + 1, k : k + 1]
+        row, row_inverse = S[..., k : k + 1, :] / pivot, inverse[..., k : k + 1, :] / pivot
+        # Every row loses its multiple of row k; row k itself is left with its scaled self.
+        factor = S[..., :, k : k + 1] - torch.eye(n, dtype=S.dtype, device=S.device)[:, k : k + 1]
+        S, inverse = S - factor * row, inverse - factor * row_inverse
+    return inverse
 
 
 class SparseMap:
