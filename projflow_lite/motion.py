@@ -60,12 +60,21 @@ class Motion:
         """Number of motions: 1, or the size of the batch."""
         return int(np.prod(self.positions.shape[:-3]))
 
+    def __getitem__(self, index: int) -> Motion:
+        """One motion of a batch, counted from 0.
+
+        Raises:
+            IndexError: if the batch has no such motion.
+        """
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"Motion: index {index} in a batch of {len(self)}")
+        batch = self.positions.reshape(-1, *self.positions.shape[-3:])
+        prompt = self.prompt[index] if isinstance(self.prompt, list) else self.prompt
+        return replace(self, positions=batch[index], prompt=prompt)
+
     def __iter__(self) -> Iterator[Motion]:
         """Go through the motions of a batch one by one."""
-        batch = self.positions.reshape(-1, *self.positions.shape[-3:])
-        prompts = self.prompt if isinstance(self.prompt, list) else [self.prompt] * len(batch)
-        for positions, prompt in zip(batch, prompts, strict=True):
-            yield replace(self, positions=positions, prompt=prompt)
+        return (self[index] for index in range(len(self)))
 
     def save(self, path: str | Path) -> None:
         """Write positions, prompt and frame rate to an ``.npz`` file that needs no pickle."""

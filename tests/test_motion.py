@@ -50,3 +50,12 @@ def test_the_residual_is_the_largest_miss_over_the_hard_rows():
     wish = pf.pin("left_wrist", [1, 4], target) & pf.pin("head", 0, [9, 9, 9], std=0.1)
     assert pf.Motion(x, wish=wish).residual == pytest.approx(0.25, abs=1e-7)
     assert pf.Motion(x).residual == 0.0
+
+
+def test_one_motion_of_a_batch_by_its_index():
+    batch = pf.Motion(np.arange(3.0)[:, None, None, None] + np.zeros((3, 4, 22, 3)), ["a", "b", "c"])
+    assert batch[1].prompt == "b"
+    assert batch[-1].positions.shape == (4, 22, 3)
+    assert batch[2].positions[0, 0, 0] == 2
+    with pytest.raises(IndexError, match="Motion: index 3 in a batch of 3"):
+        batch[3]
