@@ -1,4 +1,4 @@
-"""The shell's way in: ``projflow-lite train`` and ``projflow-lite sample``; thin on purpose."""
+"""The shell's way in: train, sample, reproduce, derive and classroom; thin on purpose."""
 
 from __future__ import annotations
 
@@ -36,12 +36,25 @@ def build_parser() -> argparse.ArgumentParser:
     sample.set_defaults(run=run_sample)
 
     reproduce = commands.add_parser("reproduce", help="measure or draw again what the docs show")
-    reproduce.add_argument("name", choices=["noise-reading", "contact-sheet"])
+    reproduce.add_argument("name", choices=["noise-reading", "posterior", "contact-sheet"])
     reproduce.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     reproduce.add_argument("--out", type=Path, default=Path("book/pictures"), help="for pictures")
     reproduce.add_argument("--quick", action="store_true", help="a few minutes, wide intervals")
     reproduce.add_argument("--json", type=Path, help="write the numbers to this file")
     reproduce.set_defaults(run=run_reproduce)
+
+    derive = commands.add_parser("derive", help="derive every equation again, by other means")
+    derive.add_argument("--only", type=int, nargs="+", metavar="N", help="these equations only")
+    derive.add_argument("--seed", type=int, default=0)
+    derive.add_argument("--json", type=Path, help="write the table to this file")
+    derive.set_defaults(run=run_derive)
+
+    classroom = commands.add_parser(
+        "classroom", help="how many wrong answers the exercises catch; or lay out a course"
+    )
+    classroom.add_argument("--course", type=Path, help="write an nbgrader course to this folder")
+    classroom.add_argument("--json", type=Path, help="write the numbers to this file")
+    classroom.set_defaults(run=run_classroom)
     return parser
 
 
@@ -105,23 +118,46 @@ def run_reproduce(options: argparse.Namespace) -> dict:
     return {"rows": rows}
 
 
+def run_derive(options: argparse.Namespace) -> dict:
+    """Derive every equation again, by other means, and print what came out."""
+    from projflow_lite import derivations
+
+    rows = derivations.run(options.only, options.seed)
+    printed = derivations.run_as_printed(options.only, options.seed)
+    print(derivations.table(rows, printed))
+    holds = all(row.holds for row in rows) and all(row.deviates for row in printed)
+    found = {"rows": derivations.plain(rows), "as_printed": derivations.plain(printed)}
+    return found | {"exit_code": 0 if holds else 1}
+
+
+def run_classroom(options: argparse.Namespace) -> dict:
+    """Lay out a course, or count the wrong answers that the exercises catch."""
+    from projflow_lite.classroom import course, mutation
+
+    if options.course:
+        return {"course": str(course.create(options.course))}
+    found = mutation.run()
+    print(mutation.report([mutation.Row(**row) for row in found["rows"]]))
+    return found
+
+
 def main(arguments: list[str] | None = None) -> int:
     """Run one command; return the exit status."""
     options = build_parser().parse_args(arguments)
     try:
         numbers = options.run(options)
-    except (ValueError, FileNotFoundError) as error:
+    except (ValueError, FileNotFoundError, FileExistsError, ModuleNotFoundError) as error:
         print(f"projflow-lite {options.command}: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("\nStopped. The same command goes on from here.", file=sys.stderr)
         return 130
     for name, value in numbers.items():
-        if name != "rows":
+        if name not in ("rows", "as_printed", "exit_code"):
             print(f"{name}: {value}")
     if options.json:
         options.json.write_text(json.dumps(numbers, indent=2) + "\n")
-    return 0
+    return numbers.get("exit_code", 0)
 
 
 if __name__ == "__main__":

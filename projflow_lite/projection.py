@@ -109,6 +109,15 @@ class Projector:
         exact = self.y[..., self.exact].expand(len(x), -1)
         return x.index_copy(-1, self.pinned, exact).reshape(x1_hat.shape)
 
+    def residual(self, x1: torch.Tensor) -> float:
+        """Largest ``|A x - y|`` over the hard rows, metres; 0 if there are none.
+
+        Args:
+            x1: ``(..., frames, 22, 3)`` metres.
+        """
+        miss = (self.A(x1.reshape(-1, self.frames * N_JOINTS * 3)) - self.y).abs()
+        return float(miss[:, self.hard].max()) if self.hard.any() else 0.0
+
     def solve(self, residual: torch.Tensor, inverses: list[torch.Tensor]) -> torch.Tensor:
         r"""Solve :math:`(A R^{-1} A^\top + \Sigma) z = r`, block by block, for ``(batch, m)``."""
         z = torch.zeros_like(residual)

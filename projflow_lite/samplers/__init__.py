@@ -2,22 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import itertools
+from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import torch
 from numpy.typing import ArrayLike
 
 from projflow_lite.constraints import Wish
 from projflow_lite.motion import Motion
-from projflow_lite.projection import Projector, check_metric
+from projflow_lite.samplers.adapter import Adapter
 from projflow_lite.samplers.euler import euler
 from projflow_lite.samplers.guidance import guided
 from projflow_lite.samplers.guides import Guides, GuideSettings
 from projflow_lite.samplers.projflow import Step, Velocity, projflow
+from projflow_lite.samplers.step import ProjectionStep
 from projflow_lite.skeleton import N_JOINTS
 
-__all__ = ["METHODS", "GuideSettings", "Guides", "Step", "euler", "guided", "projflow", "sample"]
+__all__ = [
+    "METHODS",
+    "Adapter",
+    "GuideSettings",
+    "Guides",
+    "ProjectionStep",
+    "Step",
+    "euler",
+    "guided",
+    "projflow",
+    "sample",
+]
 
 METHODS = {"projflow": projflow}
 """Methods that obey a wish, by the name that `sample` takes."""
@@ -28,7 +42,7 @@ def sample(
     wish: Wish | None = None,
     prompt: str | Sequence[str | None] | None = None,
     frames: int = 60,
-    steps: int = 50,
+    steps: int | Sequence[float] = 50,
     seed: int = 0,
     method: str = "projflow",
     *,
@@ -44,11 +58,12 @@ def sample(
     Args:
         prior: a `Prior`, or any callable ``velocity(x_t, t, text)`` on
             ``(batch, frames, 22, 3)``; its noise has the standard deviation
-            ``prior.noise_std`` metres, or 1 if it has no such attribute.
+            ``prior.noise_std`` metres, or 1 if it has no such attribute. For a model that lives in
+            another layout or normalisation see `Adapter`.
         wish: what must hold; None for an unconstrained sample.
         prompt: what the motion should be; one text, or one for each motion of the batch.
         frames: length of the motion, at 20 frames a second.
-        steps: sampling steps.
+        steps: sampling steps; or the flow times of the steps, from 0 to 1.
         seed: the same seed gives the same motion.
         method: a name of `METHODS`.
         batch: how many motions; None for one, without a batch dimension.
@@ -65,15 +80,19 @@ def sample(
             method, or numbers that make no sense.
     """
     check_numbers(frames, steps, guidance, batch, seed)
+    if wish is None and options:
+        raise ValueError(
+            f"sample: without a wish there is no {', '.join(options)}; leave it out, or add a wish"
+        )
     check_choices(prior, wish, method, dtype, guides)
     if hasattr(prior, "check_frames"):
         prior.check_frames(frames)
-    project = None if wish is None else projection(wish, frames, metric, dtype, guides)
+    times = flow_times(steps)
+    project = None if wish is None else ProjectionStep(wish, frames, metric, dtype, guides)
     generator = torch.Generator().manual_seed(seed)
-    noise_std = getattr(prior, "noise_std", 1.0)
+    noise_std = torch.as_tensor(getattr(prior, "noise_std", 1.0), dtype=dtype)
     shape = (batch or 1, frames, N_JOINTS, 3)
     x0 = noise_std * torch.randn(shape, generator=generator, dtype=dtype)
-    times = torch.linspace(0, 1, steps + 1, dtype=torch.float64).tolist()
     velocity = guided(prior, guidance)
     with torch.inference_mode():
         if project is None:
@@ -88,36 +107,30 @@ def sample(
     return Motion(positions, texts, wish)  # type: ignore[arg-type]
 
 
-def projection(
-    wish: Wish,
-    frames: int,
-    metric: str | ArrayLike = "kinematic",
-    dtype: torch.dtype = torch.float32,
-    guides: bool | GuideSettings = True,
-) -> Callable[[torch.Tensor, float], torch.Tensor]:
-    """The step that moves a predicted motion onto a wish, as a function of the motion and time.
+def flow_times(steps: int | Sequence[float]) -> list[float]:
+    """Flow times from 0 to 1: evenly spaced for a number of steps, or the given ones.
 
-    Args:
-        wish: what must hold.
-        frames: of the motion.
-        metric: see `Projector`.
-        dtype: of the motions.
-        guides: see `sample`.
+    Raises:
+        ValueError: if times do not rise from 0 to 1.
     """
-    rows = wish.rows(frames)
-    settings = guides if isinstance(guides, GuideSettings) else None
-    guide = Guides(rows, check_metric(metric), settings, dtype) if guides else None
-    if not guide:  # none wanted, or no frame between keyframes
-        projector = Projector(rows, metric, dtype)
-        return lambda x1_hat, t: projector.project(x1_hat)
-    projector = Projector(guide.rows, metric, dtype)
-    return lambda x1_hat, t: projector.project(x1_hat, guide.variance(x1_hat, t))
+    if isinstance(steps, int):
+        return torch.linspace(0, 1, steps + 1, dtype=torch.float64).tolist()
+    times = [float(t) for t in steps]
+    rising = all(a < b for a, b in itertools.pairwise(times))
+    if len(times) < 2 or times[0] != 0 or times[-1] != 1 or not rising:
+        raise ValueError("sample: steps is a whole number, or flow times that rise from 0 to 1")
+    return times
 
 
-def check_numbers(frames: int, steps: int, guidance: float, batch: int | None, seed: int) -> None:
+def check_numbers(
+    frames: int, steps: int | Sequence[float], guidance: float, batch: int | None, seed: int
+) -> None:
     """Refuse a count below 1, or a guidance or seed that is not a number."""
     for name, value in (("frames", frames), ("steps", steps), ("batch", batch)):
-        if value is not None and (not isinstance(value, int) or value < 1):
+        given_times = name == "steps" and isinstance(value, Sequence | np.ndarray | torch.Tensor)
+        if value is None or (given_times and not isinstance(value, str)):
+            continue
+        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
             raise ValueError(f"sample: {name} is a whole number of at least 1, not {value!r}")
     if not isinstance(guidance, int | float) or not -100 < guidance < 100:
         raise ValueError(f"sample: guidance is a number, usually 0 to 5, not {guidance!r}")
@@ -137,7 +150,7 @@ def check_choices(
         raise ValueError("sample: prior is a callable velocity(x_t, t, text); try pf.load_prior()")
     if wish is not None and not isinstance(wish, Wish):
         raise ValueError(
-            f"sample: wish is made by pin, offset or loop, not a {type(wish).__name__}"
+            f"sample: wish is made by pin and its neighbours, not a {type(wish).__name__}"
         )
     if method not in METHODS:
         raise ValueError(f"sample: method is one of {', '.join(METHODS)}, not '{method}'")

@@ -12,18 +12,31 @@ from typing import NamedTuple
 import torch
 
 from projflow_lite.prior.model import Text
+from projflow_lite.samplers.step import ProjectionStep
 
 Velocity = Callable[[torch.Tensor, float, Text], torch.Tensor]
 
 
 class Step(NamedTuple):
-    """What a callback sees of one sampling step; tensors are ``(batch, frames, 22, 3)``, metres."""
+    """What a callback sees of one sampling step; motions are ``(batch, frames, 22, 3)``, metres.
+
+    Attributes:
+        t, t_next: flow time before and after the step.
+        x_t: the state.
+        x1_hat: the predicted clean motion (eq. 5).
+        x1_projected: the same, moved onto the wish (eq. 8).
+        variance: ``(batch, rows)`` of the rows and guides at this step, square metres; infinity
+            where a guide is idle. None if the projection is not a `ProjectionStep`.
+        residual: largest miss of a hard row after the projection, metres; None likewise.
+    """
 
     t: float
     t_next: float
     x_t: torch.Tensor
     x1_hat: torch.Tensor
     x1_projected: torch.Tensor
+    variance: torch.Tensor | None = None
+    residual: float | None = None
 
 
 def projflow(
@@ -35,15 +48,15 @@ def projflow(
     text: Text = None,
     noise: str = "implied",
     eta: Callable[[float], float] | float | None = None,
-    noise_std: float = 1.0,
+    noise_std: float | torch.Tensor = 1.0,
     callback: Callable[[Step], None] | None = None,
 ) -> torch.Tensor:
     r"""Sample motions that obey a linear wish exactly.
 
     Args:
         velocity: the flow, ``velocity(x_t, t, text)`` on ``(batch, frames, 22, 3)``.
-        project: moves a clean motion onto the wish, given the time: `Projector.project`, with or
-            without guides.
+        project: moves a clean motion onto the wish, given the time: a `ProjectionStep`, or any
+            function.
         x0: noise to begin with, ``(batch, frames, 22, 3)``, metres.
         times: flow times from 0 to 1, rising.
         generator: where fresh noise is drawn from.
@@ -59,7 +72,8 @@ def projflow(
         eta: share of fresh noise: a number, or a function of the next time. By default
             :math:`\eta = 1 - \sigma_{t + \Delta t}`, which is the next time itself. With 0 and
             implied noise the motion is smoother still, but its feet slide more.
-        noise_std: standard deviation of the flow's noise, metres.
+        noise_std: standard deviation of the flow's noise, metres: a number, or one for every
+            joint and axis ``(22, 3)``.
         callback: called with every `Step`.
 
     Returns:
@@ -82,7 +96,11 @@ def projflow(
         share = fresh_share(eta, t_next)
         mixed = (1 - share) ** 0.5 * source + share**0.5 * fresh  # eq. 9
         if callback:
-            callback(Step(t, t_next, x_t, x1_hat, x1))
+            step = Step(t, t_next, x_t, x1_hat, x1)
+            if isinstance(project, ProjectionStep):
+                variance, residual = project.variance(x1_hat, t), project.residual(x1)
+                step = step._replace(variance=variance, residual=residual)
+            callback(step)
         x_t = t_next * x1 + (1 - t_next) * mixed  # eq. 10
     return x_t
 

@@ -105,6 +105,28 @@ def test_the_original_noise_without_fresh_noise_widens_them_with_every_step():
     assert many > 1.4 * few > 1.4 * DATA_STD
 
 
+def test_a_callback_sees_variances_and_residuals():
+    wish, steps = pf.pin("head", [2, 9], [[1, 2, 3], [4, 5, 6]]), []
+    sample(wish, callback=steps.append, dtype=torch.float64)
+    assert max(step.residual for step in steps) < 1e-12
+    assert [step.variance.shape for step in steps] == [(1, 36)] * 20
+    soft = torch.stack([step.variance[0, 6:] for step in steps])
+    assert torch.isinf(soft).sum(1).diff().min() >= 0  # the halo only shrinks
+    assert not steps[3].variance[0, :6].any()
+    plain = []
+    sample(pf.pin("head", 2, [1, 2, 3], std=0.1), callback=plain.append)
+    torch.testing.assert_close(plain[0].variance, torch.full((1, 3), 0.01))
+
+
+def test_times_may_be_given():
+    wish = pf.pin("head", 3, [0, 1, 2])
+    even = sample(wish, steps=4).positions
+    np.testing.assert_array_equal(even, sample(wish, steps=[0, 0.25, 0.5, 0.75, 1]).positions)
+    uneven = sample(wish, steps=np.array([0, 0.5, 0.8, 0.95, 1.0]))
+    assert uneven.residual < 1e-6
+    assert np.abs(even - uneven.positions).max() > 1e-3
+
+
 def test_the_seed_decides():
     wish = pf.pin("head", 0, [0, 2, 0])
     first, again, other = sample(wish, seed=1), sample(wish, seed=1), sample(wish, seed=2)
@@ -138,9 +160,23 @@ WRONG = [
         "rows 2 and 5 contradict each other: head, frame 1, z = 0 and 1",
     ),
     (lambda: sample(method="projflo"), "sample: method is one of projflow, not 'projflo'"),
-    (lambda: sample("left_wrist"), "sample: wish is made by pin, offset or loop, not a str"),
+    (lambda: sample("left_wrist"), "sample: wish is made by pin and its neighbours, not a str"),
     (lambda: sample(steps=0), "sample: steps is a whole number of at least 1, not 0"),
     (lambda: sample(steps=2.5), "sample: steps is a whole number of at least 1, not 2.5"),
+    (lambda: sample(steps=True), "sample: steps is a whole number of at least 1, not True"),
+    (lambda: sample(steps="20"), "sample: steps is a whole number of at least 1, not '20'"),
+    (
+        lambda: sample(steps=[0, 0.5]),
+        "sample: steps is a whole number, or flow times that rise from 0 to 1",
+    ),
+    (
+        lambda: sample(steps=[0, 0.6, 0.5, 1]),
+        "sample: steps is a whole number, or flow times that rise from 0 to 1",
+    ),
+    (
+        lambda: sample(eta=0.5),
+        "sample: without a wish there is no eta; leave it out, or add a wish",
+    ),
     (lambda: sample(batch=0), "sample: batch is a whole number of at least 1, not 0"),
     (
         lambda: sample(guidance=float("nan")),

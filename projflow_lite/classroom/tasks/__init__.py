@@ -1,0 +1,1 @@
+"""The exercises by topic: what to do, hints, and the cases that decide."""
