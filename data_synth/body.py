@@ -9,27 +9,28 @@ from numpy.typing import NDArray
 
 from projflow_lite.skeleton import JOINTS, N_JOINTS, PARENTS
 
-# Bone vectors of an upright body with arms hanging, metres: +x is the body's left, +z ahead.
+# Bone vectors of an upright body with arms hanging, metres: +x is the body's left, +z ahead. Two
+# builds that motion data come in: HumanML3D's one skeleton, and the people of a capture studio.
 REST = {
-    "left_hip": (0.075, -0.088, 0.0),
-    "spine1": (0.0, 0.122, -0.005),
-    "left_knee": (0.008, -0.405, 0.0),
-    "spine2": (0.0, 0.130, 0.0),
-    "left_ankle": (0.0, -0.430, 0.0),
-    "spine3": (0.0, 0.050, 0.005),
-    "left_foot": (0.016, -0.060, 0.122),
-    "neck": (0.0, 0.200, 0.0),
-    "left_collar": (0.070, 0.115, -0.005),
-    "head": (0.0, 0.092, 0.035),
-    "left_shoulder": (0.112, 0.038, -0.005),
-    "left_elbow": (0.0, -0.275, 0.0),
-    "left_wrist": (0.0, -0.272, 0.0),
+    "left_hip": ((0.070, -0.077, 0.020), (0.096, -0.108, 0.024)),
+    "spine1": ((0.0, 0.131, -0.003), (0.0, 0.115, -0.003)),
+    "left_knee": ((0.006, -0.392, 0.0), (0.006, -0.420, 0.0)),
+    "spine2": ((0.0, 0.142, 0.006), (0.0, 0.115, 0.006)),
+    "left_ankle": ((0.0, -0.429, 0.0), (0.0, -0.444, 0.0)),
+    "spine3": ((0.0, 0.057, 0.003), (0.0, 0.041, 0.002)),
+    "left_foot": ((0.010, -0.045, 0.138), (0.010, -0.042, 0.120)),
+    "neck": ((0.0, 0.219, -0.006), (0.0, 0.171, -0.006)),
+    "left_collar": ((0.087, 0.110, -0.006), (0.082, 0.105, -0.007)),
+    "head": ((0.0, 0.102, 0.015), (0.0, 0.096, 0.010)),
+    "left_shoulder": ((0.120, 0.040, -0.013), (0.104, 0.036, -0.012)),
+    "left_elbow": ((0.0, -0.260, 0.0), (0.0, -0.290, 0.0)),
+    "left_wrist": ((0.0, -0.268, 0.0), (0.0, -0.296, 0.0)),
 }
 SIDES = ("left", "right")
-LONGEST_LEG = 0.985
+LONGEST_LEG = 0.990
 """Distance from hip to ankle, as a share of thigh plus shank: no knee is ever quite straight."""
 
-TOE_HEIGHT = 0.018
+TOE_HEIGHT = 0.012
 """Height of the toe joint of a foot flat on the floor, metres."""
 
 
@@ -39,15 +40,20 @@ def joint(name: str) -> int:
 
 
 def sample_bones(random: np.random.Generator, n: int) -> NDArray:
-    """Bone vectors at rest for `n` bodies, ``(n, 22, 3)`` metres, left and right alike."""
-    size = random.normal(1.0, 0.035, n).clip(0.92, 1.08)
+    """Bone vectors at rest for `n` bodies, ``(n, 22, 3)`` metres, left and right alike.
+
+    Every body lies somewhere between the two builds of `REST`, and is a little taller or shorter.
+    """
+    size = random.normal(1.0, 0.025, n).clip(0.94, 1.06)
+    build = random.uniform(0.0, 1.0, (n, 1))
     bones = np.zeros((n, N_JOINTS, 3))
-    for name, vector in REST.items():
-        length = size * random.normal(1.0, 0.02, n).clip(0.95, 1.05)
-        bones[:, joint(name)] = length[:, None] * np.array(vector)
+    for name, (one, other) in REST.items():
+        length = size * random.normal(1.0, 0.015, n).clip(0.96, 1.04)
+        vector = (1 - build) * np.array(one) + build * np.array(other)
+        bones[:, joint(name)] = length[:, None] * vector
         if name.startswith("left"):
-            other = joint(name.replace("left", "right"))
-            bones[:, other] = bones[:, joint(name)] * [-1, 1, 1]
+            mirrored = joint(name.replace("left", "right"))
+            bones[:, mirrored] = bones[:, joint(name)] * [-1, 1, 1]
     return bones
 
 
@@ -131,7 +137,7 @@ def two_bones(
 def within_reach(offset: NDArray, reach: NDArray) -> NDArray:
     """Shorten offsets ``(..., 3)`` smoothly so that none is longer than `reach`."""
     distance = np.linalg.norm(offset, axis=-1)
-    knee = 0.9 * reach  # below this nothing changes; above it the limb approaches full stretch
+    knee = 0.95 * reach  # below this nothing changes; above it the limb approaches full stretch
     beyond = np.maximum(distance - knee, 0)
     soft = knee + (reach - knee) * (1 - np.exp(-beyond / (reach - knee)))
     return offset * (np.where(distance > knee, soft, distance) / distance)[..., None]
@@ -201,7 +207,7 @@ def elbow_pole(hand: NDArray, sign: float) -> NDArray:
     height = hand[..., 1] / np.linalg.norm(hand, axis=-1)
     raised = ((height + 0.95) / 0.7).clip(0, 1)[..., None]
     raised = raised**2 * (3 - 2 * raised)
-    hanging = np.array([0.2 * sign, -0.2, -1.0])
+    hanging = np.array([0.05 * sign, -0.2, -1.0])
     return hanging + raised * (np.array([0.6 * sign, -0.75, 0.2]) - hanging)
 
 

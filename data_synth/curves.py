@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -65,6 +67,89 @@ def wander(
     return size * total / np.sqrt(2)
 
 
+def bump(s: NDArray, rise: float, up: float, down: float, fall: float) -> NDArray:
+    """From 0 to 1 between `rise` and `up`, and back to 0 between `down` and `fall`."""
+    return ease((s - rise) / (up - rise)) * (1 - ease((s - down) / (fall - down)))
+
+
+def knots(*columns: NDArray) -> NDArray:
+    """Put ``(n, 1)`` columns side by side, as `hermite` takes them."""
+    return np.concatenate(np.broadcast_arrays(*columns), axis=1)
+
+
+class Acts(NamedTuple):
+    """One thing done once or several times in a clip.
+
+    Attributes:
+        phase: ``(n, frames)`` 0 before each time, 1 after it.
+        done: ``(n, frames)`` how many times were finished before.
+        times: ``(n, 1)`` how often it is done.
+        strength: ``(n, 1)`` 1, or less where the clip is too short to do it in full.
+        envelope: ``(n, frames)`` 1 from the first time to the last, rising before, falling after.
+    """
+
+    phase: NDArray
+    done: NDArray
+    times: NDArray
+    strength: NDArray
+    envelope: NDArray
+
+
+def acts(
+    random: np.random.Generator,
+    n: int,
+    frames: int,
+    lasting: tuple[float, float],
+    most: int = 3,
+    margin: float = 0.08,
+) -> Acts:
+    """Draw when an act is done, so that it fits into the clip whatever its length.
+
+    Args:
+        random: where timing is drawn from.
+        n: clips.
+        frames: of the clip.
+        lasting: shortest and longest time that one act takes, seconds.
+        most: how often it may be done.
+        margin: share of the clip that stays free for preparing and recovering.
+    """
+    length = frames / FPS
+    room = length * (1 - margin)
+    each = uniform(random, *lasting, n)
+    fit = np.floor(room / each).clip(1, most)
+    times = 1 + np.floor(random.random((n, 1)) * fit)
+    wanted = each
+    each = np.minimum(each, room / times)
+    begin = 0.5 * margin * length + random.random((n, 1)) * (room - each * times)
+    t = seconds(frames)
+    since = ((t - begin) / each).clip(0, times)
+    done = np.floor(since).clip(0, times - 1)
+    lead = np.minimum(0.5, 0.25 * length)
+    end = begin + each * times
+    envelope = ease((t - begin + 0.5 * lead) / lead) * ease((end + 0.5 * lead - t) / lead)
+    return Acts(since - done, done, times, (each / wanted) ** 0.7, envelope)
+
+
+def through(s: NDArray, points: list[tuple[float, tuple[float, float, float]]]) -> NDArray:
+    """A smooth path ``(n, frames, 3)`` through points at given phases, at rest at both ends.
+
+    Args:
+        s: ``(n, frames)`` phase.
+        points: phase, and what the three coordinates are there.
+    """
+    where = np.array([phase for phase, _ in points])
+    value = np.array([point for _, point in points])
+    slope = np.zeros_like(value)
+    slope[1:-1] = (value[2:] - value[:-2]) / (where[2:] - where[:-2])[:, None]
+    k = np.searchsorted(where, s, side="right").clip(1, len(where) - 1) - 1
+    width = (where[k + 1] - where[k])[..., None]
+    u = ((s - where[k])[..., None] / width).clip(0, 1)
+    return (
+        (1 + 2 * u) * (1 - u) ** 2 * value[k] + u * (1 - u) ** 2 * slope[k] * width
+        + u**2 * (3 - 2 * u) * value[k + 1] + u**2 * (u - 1) * slope[k + 1] * width
+    )  # fmt: skip
+
+
 def hold(
     random: np.random.Generator, n: int, frames: int, rise: tuple[float, float]
 ) -> tuple[NDArray, NDArray]:
@@ -76,10 +161,10 @@ def hold(
         random: where timing is drawn from.
         n: clips.
         frames: of the clip.
-        rise: shortest and longest time to rise, seconds, for a clip of three seconds or more.
+        rise: shortest and longest time to rise, seconds; as little as 0.6 of it in a short clip.
     """
     length = frames / FPS
-    scale = min(1.0, length / 3.0)
+    scale = min(1.0, max(0.6, length / 3.0))
     begin = uniform(random, 0.02, 0.12, n) * length
     up = begin + uniform(random, *rise, n) * scale
     down = uniform(random, 0.62, 0.75, n) * length

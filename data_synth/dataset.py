@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
+from itertools import count
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,10 @@ from data_synth.captions import caption
 
 ACTIONS: tuple[str, ...] = tuple(MAKERS)
 SHORTEST, LONGEST = 20, 196
+HELD_OUT = 2**64
+"""Seeds of the held-out clips begin here, above all that training can ask for."""
+BLOCK = 10 * len(ACTIONS)
+"""Held-out clips are made this many at a time, so that a small set is the start of a larger one."""
 
 
 class Clips(NamedTuple):
@@ -42,14 +47,73 @@ def make_clips(
     Args:
         n: how many.
         frames: length of each, 20 to 196.
-        seed: the same seed, and the same other arguments, give the same clips.
+        seed: from 0 to 2^63 - 1; the same seed, and the same other arguments, give the same clips.
         actions: names of `ACTIONS`; by default all. Each comes equally often, in random order.
 
     Raises:
-        ValueError: for an unknown action, a length out of range, or fewer than one clip.
+        ValueError: for an unknown action, a length or a seed out of range, or fewer than one clip.
     """
     names = check(n, frames, actions)
-    random = np.random.default_rng(seed)
+    return drawn_with(np.random.default_rng(check_seed("make_clips", seed)), n, frames, names)
+
+
+def stream(
+    batch: int,
+    frames: int = 60,
+    seed: int = 0,
+    actions: Sequence[str] | None = None,
+    first: int = 0,
+) -> Iterator[Clips]:
+    """Batches of fresh clips without end, for training: no clip comes twice.
+
+    Args:
+        batch: how many clips at a time.
+        frames: length of each, 20 to 196.
+        seed: from 0 to 2^63 - 1; the same seed gives the same stream.
+        actions: names of `ACTIONS`; by default all.
+        first: number of the batch to begin with, to resume a stream.
+
+    Raises:
+        ValueError: as `make_clips` does.
+    """
+    names = check(batch, frames, actions)
+    seed = check_seed("stream", seed)
+    return (
+        drawn_with(np.random.default_rng([seed, number]), batch, frames, names)
+        for number in count(first)
+    )
+
+
+def held_out(n: int, frames: int = 60) -> Clips:
+    """The clips to evaluate on: always the same, and out of reach of every training seed.
+
+    Args:
+        n: how many; fewer clips are the first of more.
+        frames: length of each, 20 to 196.
+
+    Raises:
+        ValueError: for a length out of range, or fewer than one clip.
+    """
+    names = check(n, frames, None)
+    blocks = [
+        drawn_with(np.random.default_rng(HELD_OUT + k), BLOCK, frames, names)
+        for k in range(-(-n // BLOCK))
+    ]
+    keys = dict.fromkeys(key for block in blocks for key in block.parameters)
+    missing = np.full(BLOCK, np.nan)
+    return Clips(
+        np.concatenate([block.positions for block in blocks])[:n],
+        [caption for block in blocks for caption in block.captions][:n],
+        [action for block in blocks for action in block.actions][:n],
+        {
+            key: np.concatenate([block.parameters.get(key, missing) for block in blocks])[:n]
+            for key in keys
+        },
+    )
+
+
+def drawn_with(random: np.random.Generator, n: int, frames: int, names: list[str]) -> Clips:
+    """Make clips of the named actions with the numbers of one generator."""
     order = random.permutation(np.arange(n) % len(names))
     positions = np.zeros((n, frames, 22, 3), dtype=np.float32)
     captions, done = [""] * n, [names[k] for k in order]
@@ -69,6 +133,13 @@ def make_clips(
             own = {key: float(values[place]) for key, values in drawn.items()}
             captions[clip] = caption(name, own, random)
     return Clips(positions, captions, done, parameters)
+
+
+def check_seed(where: str, seed: int) -> int:
+    """Refuse seeds that belong to the held-out clips, or that are none."""
+    if not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
+        raise ValueError(f"{where}: seed is a whole number from 0 to 2^63 - 1, not {seed!r}")
+    return int(seed)
 
 
 def check(n: int, frames: int, actions: Sequence[str] | None) -> list[str]:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from data_synth.body import Made, Pose
-from data_synth.curves import ease, hermite, seconds, uniform
-from data_synth.standing import settle, stand
+from data_synth.curves import ease, hermite, knots, seconds, uniform
+from data_synth.standing import settle, stand, swing_arm
 from projflow_lite.skeleton import FPS
 
 GRAVITY = 9.81
@@ -35,21 +35,16 @@ class Jump(NamedTuple):
 def plan(random: np.random.Generator, n: int, frames: int) -> Jump:
     """Draw jumps that fit into the clip; short clips have low and quick ones."""
     scale = min(1.0, frames / FPS / 2.2)
-    height = uniform(random, 0.10, 0.34, n) * scale
+    height = uniform(random, 0.12, 0.42, n) * scale
     ahead = uniform(random, 0.3, 1.0, n) * scale * (random.random((n, 1)) < 0.5)
     air = 2 * np.sqrt(2 * height / GRAVITY)
-    crouch = uniform(random, 0.45, 0.65, n) * scale
+    crouch = uniform(random, 0.38, 0.60, n) * scale
     push = uniform(random, 0.24, 0.30, n)
     absorb = uniform(random, 0.22, 0.3, n)
     total = crouch + push + air + absorb + 0.5 * scale
     begin = uniform(random, 0.02, 0.95, n) * np.maximum(frames / FPS - total, 0.0)
     off = begin + crouch + push
     return Jump(begin, begin + crouch, off, off + air, off + air + absorb, height, ahead)
-
-
-def knots(*columns: NDArray) -> NDArray:
-    """Put ``(n, 1)`` columns side by side, as `hermite` takes them."""
-    return np.concatenate(columns, axis=1)
 
 
 def pelvis_height(
@@ -121,7 +116,5 @@ def swing_arms(random: np.random.Generator, pose: Pose, when: Jump, t: NDArray) 
         knots(when.begin, when.lowest, when.off + 0.12, when.land, when.absorbed + 0.35),
         knots(zero, zero - 0.7, up, 0.6 * up, zero),
     )
-    for s in range(2):
-        x, y, z = np.moveaxis(pose.hand[:, :, s], -1, 0)
-        c, sn = np.cos(angle), np.sin(angle)
-        pose.hand[:, :, s] = np.stack([x, c * y + sn * z, -sn * y + c * z], axis=-1)
+    for side in (1.0, -1.0):
+        swing_arm(pose, side, angle)
