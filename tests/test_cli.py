@@ -65,7 +65,33 @@ def test_errors_are_one_line_and_the_status_is_not_zero(command, message, capsys
     assert said.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", [[], ["train"], ["sample"], ["reproduce"]])
+def test_derive_prints_what_was_derived_and_fails_when_an_equation_is_wrong(
+    tmp_path, capsys, monkeypatch
+):
+    numbers = tmp_path / "derived.json"
+    assert main(["derive", "--only", "2", "36", "--json", str(numbers)]) == 0
+    assert "Straight path from noise to data" in capsys.readouterr().out
+    rows = json.loads(numbers.read_text())["rows"]
+    assert {row["equation"] for row in rows} == {2, 36}
+    right = pf.equations.interpolate
+    monkeypatch.setattr(pf.equations, "interpolate", lambda x0, x1, t: right(x1, x0, t))
+    assert main(["derive", "--only", "2"]) == 1
+
+
+def test_classroom_counts_the_wrong_answers_or_lays_out_a_course(tmp_path, capsys):
+    assert main(["classroom"]) == 0
+    assert "mutation score 100 %" in capsys.readouterr().out
+    folder = tmp_path / "course"
+    assert main(["classroom", "--course", str(folder)]) == 0
+    assert len(list(folder.rglob("*.ipynb"))) == 3
+    assert main(["classroom", "--course", str(folder)]) == 2
+    assert "is not an empty folder" in capsys.readouterr().err
+
+
+COMMANDS = [[], ["train"], ["sample"], ["reproduce"], ["derive"], ["classroom"]]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
 def test_every_command_has_help(command, capsys):
     with pytest.raises(SystemExit) as stopped:
         main([*command, "--help"])
