@@ -107,8 +107,13 @@ def run_sample(options: argparse.Namespace) -> dict:
 def run_reproduce(options: argparse.Namespace) -> dict:
     """Run one study."""
     from projflow_lite.prior import load_prior
-    from projflow_lite.studies import contact_sheet, noise_reading
+    from projflow_lite.studies import contact_sheet, noise_reading, posterior
 
+    if options.name == "posterior":
+        rows = posterior.run(options.quick)
+        print(posterior.table(rows))
+        picture = posterior.figure(rows, options.out / "posterior.png")
+        return {"picture": str(picture), "rows": rows}
     prior = load_prior(options.prior)
     if options.name == "contact-sheet":
         return {"written": [str(path) for path in contact_sheet.run(prior, options.out)]}

@@ -95,6 +95,13 @@ from .pseudo_observations import (
     joint_trust,
     time_decay,
 )
+from .sampler_moments import (
+    endpoint_precision,
+    mixture_endpoint,
+    projection_map,
+    sampler_moments,
+    sampler_step,
+)
 
 __all__ = [
     "TABLE_5",
@@ -103,6 +110,7 @@ __all__ = [
     "combined_observation",
     "curvature",
     "ddnm",
+    "endpoint_precision",
     "euclidean_coordinate_update",
     "euclidean_gain",
     "euclidean_masked_average",
@@ -141,6 +149,7 @@ __all__ = [
     "masked_observation",
     "masked_update",
     "mix_noise",
+    "mixture_endpoint",
     "mixture_posterior",
     "mixture_velocity",
     "noise_mixing",
@@ -152,9 +161,12 @@ __all__ = [
     "posterior_covariance",
     "project",
     "projection_correction",
+    "projection_map",
     "projection_objective",
     "recompose",
     "relative_position",
+    "sampler_moments",
+    "sampler_step",
     "selection_rows",
     "solve_consistent",
     "squared_norm",

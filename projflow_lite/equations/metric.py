@@ -118,8 +118,9 @@ def joint_metric(L: ArrayLike, w_kin: float, ridge: float) -> NDArray:
     L = real_array("joint_metric", "L", L, (None, None))
     if L.shape[0] != L.shape[1]:
         raise ValueError(f"joint_metric: L has shape {L.shape}, expected a square matrix")
-    hint = "; w_kin must not be negative and ridge must be positive"
-    return positive_definite("joint_metric", "R_J", w_kin * L + ridge * np.eye(len(L)), hint)
+    if not (w_kin >= 0 and ridge > 0):  # rounding can let a singular matrix pass for definite
+        raise ValueError("joint_metric: w_kin must not be negative and ridge must be positive")
+    return positive_definite("joint_metric", "R_J", w_kin * L + ridge * np.eye(len(L)))
 
 
 def marginal_variance(R_J: ArrayLike) -> NDArray:
