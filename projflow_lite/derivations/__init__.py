@@ -5,6 +5,8 @@ A reader who doubts the toolkit asks for the table:
 >>> from projflow_lite import derivations
 >>> print(derivations.table(derivations.run(), derivations.run_as_printed()))  # doctest: +SKIP
 
+``run(paper="GMD")`` does the same for GMD, and a table shows the rows of both, one after the other.
+
 Each derivation is a short function with its argument in the docstring, sorted by topic. It gets
 random numbers, compares `projflow_lite.equations` with something else (symbols, fractions, a
 generic solver, a drawn sample, a loop) and returns the largest deviation.
@@ -15,6 +17,8 @@ from . import (
     as_printed,
     flow,
     gains,
+    gmd,
+    gmd_as_printed,
     guides,
     inverse_problem,
     masks,
@@ -49,6 +53,8 @@ __all__ = [
     "derives",
     "flow",
     "gains",
+    "gmd",
+    "gmd_as_printed",
     "guides",
     "inverse_problem",
     "masks",

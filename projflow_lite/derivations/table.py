@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from .registry import PrintedRow, Row
+from .registry import PROJFLOW, PrintedRow, Row
 
 TEXT = 64
 AS_PRINTED = "As printed or released: what is expected NOT to hold, and how far off it is"
@@ -17,20 +17,25 @@ def table(rows: Sequence[Row], as_printed: Sequence[PrintedRow] = ()) -> str:
     """Write the findings as an aligned table that ends with a summary.
 
     Each equation has a line with its number and title, and below it one entry per derivation.
+    Rows of another paper than ProjFlow come in a section under its name.
 
     Args:
-        rows: from `run`.
-        as_printed: from `run_as_printed`; a section of its own, before the summary.
+        rows: from `run`; of several papers, one after the other.
+        as_printed: from `run_as_printed`; sections of its own, before the summary.
 
     Returns:
         The text, without a line break at its end.
     """
     lines = [_columns("eq.", "", "deviation", "at most", "seconds", "")]
-    for _, entries in groupby(rows, key=lambda row: row.equation):
-        lines += _derived(list(entries))
+    for paper, of_paper in groupby(rows, key=lambda row: row.paper):
+        lines += [] if paper == PROJFLOW else ["", paper]
+        for _, entries in groupby(of_paper, key=lambda row: row.equation):
+            lines += _derived(list(entries))
     if as_printed:
         lines += ["", AS_PRINTED, _columns("eq.", "", "deviation", "more than", "seconds", "")]
-        for _, found in groupby(as_printed, key=lambda row: row.equation):
+    for paper, as_in_paper in groupby(as_printed, key=lambda row: row.paper):
+        lines += [] if paper == PROJFLOW else ["", paper]
+        for _, found in groupby(as_in_paper, key=lambda row: row.equation):
             lines += _printed(list(found))
     lines += ["", *([printed_summary(as_printed)] if as_printed else []), summary(rows)]
     return "\n".join(line.rstrip() for line in lines)
@@ -45,13 +50,13 @@ def summary(rows: Sequence[Row]) -> str:
     counted = f"{_count(rows, 'derivation')}, {sum(row.seconds for row in rows):.1f} seconds"
     if not rows:
         return f"{counted}; nothing was derived."
-    failed = sorted({row.equation for row in rows if not row.holds})
+    failed = _named([row for row in rows if not row.holds])
     worst = max(rows, key=_strain)
-    named = ", ".join(f"eq. {number}" for number in failed)
+    named = ", ".join(failed)
     verdict = f"{named} {'DOES' if len(failed) == 1 else 'DO'} NOT HOLD" if failed else "all hold"
     return (
         f"{counted}; largest deviation {_strain(worst):.2g} of its tolerance "
-        f"(eq. {worst.equation}, {_number(worst.deviation)}); {verdict}."
+        f"({_named([worst])[0]}, {_number(worst.deviation)}); {verdict}."
     )
 
 
@@ -61,8 +66,8 @@ def printed_summary(rows: Sequence[PrintedRow]) -> str:
     Args:
         rows: from `run_as_printed`.
     """
-    failed = sorted({row.equation for row in rows if not row.deviates})
-    verdict = f"not so {', '.join(f'eq. {n}' for n in failed)}" if failed else "all deviate"
+    failed = _named([row for row in rows if not row.deviates])
+    verdict = f"not so {', '.join(failed)}" if failed else "all deviate"
     return f"As printed or released: {_count(rows, 'counterexample')}; {verdict}."
 
 
@@ -112,10 +117,16 @@ def _columns(number: str, text: str, deviation: str, bound: str, seconds: str, m
 
 def _count(rows: Sequence[Row] | Sequence[PrintedRow], noun: str) -> str:
     """Say how many equations and how many rows there are."""
-    equations = len({row.equation for row in rows})
+    equations = len({(row.paper, row.equation) for row in rows})
     return (
         f"{equations} equation{'s' * (equations != 1)}, {len(rows)} {noun}{'s' * (len(rows) != 1)}"
     )
+
+
+def _named(rows: Sequence[Row] | Sequence[PrintedRow]) -> list[str]:
+    """Name the equations of these rows, each once, in their order; those of ProjFlow as "eq."."""
+    names = (f"{'eq.' if row.paper == PROJFLOW else row.paper} {row.equation}" for row in rows)
+    return list(dict.fromkeys(names))
 
 
 def _strain(row: Row) -> float:

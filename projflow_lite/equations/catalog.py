@@ -10,7 +10,7 @@ def catalog() -> list[Record]:
     """Return one record per printed equation: ProjFlow 1–52, then BMM 1–16, then GMD.
 
     A record is a named tuple of strings: paper, number, title, latex, function, check, status
-    and erratum. ProjFlow's are checked; those of the other two papers are open.
+    and erratum. ProjFlow's and GMD's are checked; BMM's are open.
     """
     return [
         *projflow_paper.RECORDS,
