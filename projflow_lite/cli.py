@@ -43,8 +43,16 @@ def build_parser() -> argparse.ArgumentParser:
     reproduce.add_argument("--json", type=Path, help="write the numbers to this file")
     reproduce.set_defaults(run=run_reproduce)
 
+    score = commands.add_parser("score", help="judge a prior against held-out motion")
+    score.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
+    score.add_argument("--quick", action="store_true", help="two minutes, wide intervals")
+    score.add_argument("--blind", type=Path, metavar="FOLDER", help="write a blind page instead")
+    score.add_argument("--real", type=Path, help="real clips (.npz) for the blind page")
+    score.add_argument("--json", type=Path, help="write the numbers to this file")
+    score.set_defaults(run=run_score)
+
     derive = commands.add_parser("derive", help="derive every equation again, by other means")
-    derive.add_argument("--only", type=int, nargs="+", metavar="N", help="these equations only")
+    derive.add_argument("--only", type=int, nargs="+", metavar="N", help="these of ProjFlow only")
     derive.add_argument("--seed", type=int, default=0)
     derive.add_argument("--json", type=Path, help="write the table to this file")
     derive.set_defaults(run=run_derive)
@@ -123,12 +131,29 @@ def run_reproduce(options: argparse.Namespace) -> dict:
     return {"rows": rows}
 
 
+def run_score(options: argparse.Namespace) -> dict:
+    """Print the table of scores, or write a page to guess which clips are real."""
+    from projflow_lite.prior import load_prior
+    from projflow_lite.studies import blind_page, score_prior
+
+    prior = load_prior(options.prior)
+    if options.blind:
+        page, key = blind_page.run(prior, options.blind, options.real)
+        return {"page": str(page), "key": str(key)}
+    rows = score_prior.run(prior, quick=options.quick)
+    print(score_prior.table(rows))
+    return {"rows": rows}
+
+
 def run_derive(options: argparse.Namespace) -> dict:
     """Derive every equation again, by other means, and print what came out."""
     from projflow_lite import derivations
 
     rows = derivations.run(options.only, options.seed)
     printed = derivations.run_as_printed(options.only, options.seed)
+    if options.only is None:
+        rows += derivations.run(seed=options.seed, paper="GMD")
+        printed += derivations.run_as_printed(seed=options.seed, paper="GMD")
     print(derivations.table(rows, printed))
     holds = all(row.holds for row in rows) and all(row.deviates for row in printed)
     found = {"rows": derivations.plain(rows), "as_printed": derivations.plain(printed)}

@@ -156,7 +156,9 @@ def loop(
         return stack([closing, velocity_closes(chosen, total)]) if smooth else closing
 
     who = "the whole body" if joints is None else " and ".join(JOINTS[j] for j in chosen)
-    where = "in the pose in which it began" if moving else "where it began"
+    moved = ", ".join(f"{value:g}" for value in vector)
+    where = "where it began" if shift is None else f"({moved}) m from where it began"
+    where = "in the pose in which it began" if moving else where
     words = f"{who} ends {where}" + (" and moves on as it did" if smooth else "")
     return Wish((Term(words, build),))
 

@@ -47,7 +47,7 @@ def projflow(
     generator: torch.Generator,
     text: Text = None,
     noise: str = "implied",
-    eta: Callable[[float], float] | float | None = None,
+    eta: Callable[[float], float] | float | str = "paper",
     noise_std: float | torch.Tensor = 1.0,
     callback: Callable[[Step], None] | None = None,
 ) -> torch.Tensor:
@@ -69,9 +69,12 @@ def projflow(
             not overlap, and so is the worst acceleration (36 against 60 m/s²), with intervals
             apart in five of eight. With every frame pinned the two are alike. See
             ``projflow-lite reproduce noise-reading`` and book/results/noise-reading.json.
-        eta: share of fresh noise: a number, or a function of the next time. By default
-            :math:`\eta = 1 - \sigma_{t + \Delta t}`, which is the next time itself. With 0 and
-            implied noise the motion is smoother still, but its feet slide more.
+        eta: share of fresh noise. "paper" is :math:`1 - \sigma_{t + \Delta t}`, the next time itself.
+            It does not shrink with the step, so samples stay too close to the mean however many
+            steps there are. "ddpm" is :math:`1 - \mathrm{SNR}_t / \mathrm{SNR}_{t + \Delta t}` with
+            :math:`\mathrm{SNR}_t = t^2 / (1 - t)^2`: with implied noise a step is then one of
+            diffusion's ancestral sampling. Or a number (0 adds none: smoother still, but feet
+            slide more), or a function of the next time.
         noise_std: standard deviation of the flow's noise, metres: a number, or one for every
             joint and axis ``(22, 3)``.
         callback: called with every `Step`.
@@ -93,7 +96,7 @@ def projflow(
         x1 = project(x1_hat, t)  # eq. 6-8
         source = x0 if noise == "original" else x_t - t * v
         fresh = noise_std * torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
-        share = fresh_share(eta, t_next)
+        share = fresh_share(eta, t, t_next)
         mixed = (1 - share) ** 0.5 * source + share**0.5 * fresh  # eq. 9
         if callback:
             step = Step(t, t_next, x_t, x1_hat, x1)
@@ -105,9 +108,15 @@ def projflow(
     return x_t
 
 
-def fresh_share(eta: Callable[[float], float] | float | None, t_next: float) -> float:
-    """The share of fresh noise at one step; by default the next time itself."""
-    share = t_next if eta is None else eta(t_next) if callable(eta) else eta
+def fresh_share(eta: Callable[[float], float] | float | str, t: float, t_next: float) -> float:
+    """The share of fresh noise at one step, see `projflow`."""
+    if eta == "paper":
+        return t_next
+    if eta == "ddpm":
+        return 1.0 - (t * (1 - t_next) / ((1 - t) * t_next)) ** 2
+    if isinstance(eta, str):
+        raise ValueError(f"projflow: eta is 'paper', 'ddpm', a number or a function, not '{eta}'")
+    share = eta(t_next) if callable(eta) else eta
     if not 0 <= share <= 1:
         raise ValueError(f"projflow: eta is a share of 0 to 1, not {share}")
     return share

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from scipy import stats
 from tqdm.auto import tqdm
 
 from data_synth import Clips, make_clips
@@ -114,10 +113,8 @@ def repeat(make: Callable[[int], NDArray], reference: NDArray, seeds: int) -> di
     row: dict[str, Any] = {}
     for name in columns[0]:
         values = np.array([column[name] for column in columns])
-        # Few seeds: Student's t, not 1.96.
-        t = stats.t.ppf(0.975, seeds - 1) if seeds > 1 else float("nan")
-        half = t * values.std(ddof=min(1, seeds - 1)) / np.sqrt(seeds)
-        row[name] = {"mean": float(values.mean()), "half width": float(half)}
+        mean, half = scores.interval(values)
+        row[name] = {"mean": mean, "half width": half}
     return row
 
 

@@ -9,6 +9,7 @@ import torch
 import projflow_lite as pf
 from projflow_lite import equations
 from projflow_lite.samplers import euler, guided, projflow
+from projflow_lite.samplers.projflow import fresh_share
 
 MEAN = torch.randn(12, 22, 3, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
 NOISE_STD, DATA_STD = 0.7, 0.2
@@ -97,6 +98,21 @@ def test_fresh_noise_narrows_the_samples():
     """
     for steps in (20, 200):
         assert spread_away_from_the_pin(noise="implied", steps=steps) < 0.85 * DATA_STD
+
+
+def test_diffusions_share_of_fresh_noise_keeps_the_spread():
+    few, many = (spread_away_from_the_pin(eta="ddpm", steps=n) for n in (20, 200))
+    assert many == pytest.approx(DATA_STD, rel=0.03)
+    assert abs(few - DATA_STD) > abs(many - DATA_STD)
+
+
+def test_diffusions_share_is_the_equations():
+    grid = np.linspace(0, 1, 12)[1:-1]
+    for t, t_next in pairwise(grid):
+        assert fresh_share("ddpm", t, t_next) == pytest.approx(
+            float(equations.ddpm_noise_share(t, t_next)), rel=1e-12
+        )
+    assert fresh_share("ddpm", 0.0, 0.1) == fresh_share("ddpm", 0.9, 1.0) == 1
 
 
 def test_the_original_noise_without_fresh_noise_widens_them_with_every_step():
@@ -198,6 +214,10 @@ WRONG = [
     (lambda: sample(guides=3), "sample: guides is True, False or GuideSettings(...), not 3"),
     (lambda: sample(guidance="x"), "sample: guidance is a number, usually 0 to 5, not 'x'"),
     (lambda: sample(eta=1.5, wish=pf.loop()), "projflow: eta is a share of 0 to 1, not 1.5"),
+    (
+        lambda: sample(eta="papper", wish=pf.loop()),
+        "projflow: eta is 'paper', 'ddpm', a number or a function, not 'papper'",
+    ),
 ]
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from data_synth import make_clips
 from projflow_lite import scores
 from projflow_lite.skeleton import EDGES, JOINTS
 
@@ -51,6 +52,36 @@ def test_a_foot_that_stands_does_not_skate():
     x = still()
     x[:, LEFT_FOOT, 1] = 0.0
     assert scores.foot_skating(x) == 0
+
+
+@pytest.mark.parametrize(
+    ("heel", "speed", "expected"), [(0.02, 0.08, 20), (0.02, 0.07, 0), (0.06, 0.08, 0)]
+)
+def test_a_planted_slide_of_both_heels_is_found_by_bmm_s_definition(heel, speed, expected):
+    x = still()
+    ankles = [JOINTS.index("left_ankle"), JOINTS.index("right_ankle")]
+    x[:, ankles, 1] = heel + 0.05  # a heel is 5 cm below its ankle
+    x[20:41, ankles, 2] += (np.arange(21) * speed / 20)[:, None]
+    x[41:, ankles, 2] += speed
+    assert scores.foot_skating(x, definition="bmm") * 59 == pytest.approx(expected)
+    assert scores.foot_skating(x) == 0  # far below 0.5 m/s
+    x[:, ankles[0], 2] = 0.0  # one heel stands: that is no skating by this definition
+    assert scores.foot_skating(x, definition="bmm") == 0
+
+
+def test_skating_refuses_another_definition_and_a_single_frame():
+    with pytest.raises(ValueError, match="'gmd' or 'bmm', not 'omni'"):
+        scores.foot_skating(still(), definition="omni")
+    with pytest.raises(ValueError, match="one frame"):
+        scores.foot_skating(still(1))
+
+
+def test_a_heel_that_stands_is_where_the_floor_is():
+    """The drop from ankle to heel fits the data: a standing body stands, and does not skate."""
+    x = make_clips(64, 40, seed=5, actions=["idle"]).positions
+    ankles = x[:, :, [JOINTS.index("left_ankle"), JOINTS.index("right_ankle")], 1]
+    assert np.median(ankles) - 0.05 == pytest.approx(0, abs=0.02)
+    assert scores.foot_skating(x, definition="bmm").mean() < 0.05
 
 
 def test_one_bone_stretched_by_a_tenth_in_half_of_the_frames():
