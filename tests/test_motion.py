@@ -53,7 +53,9 @@ def test_the_residual_is_the_largest_miss_over_the_hard_rows():
 
 
 def test_one_motion_of_a_batch_by_its_index():
-    batch = pf.Motion(np.arange(3.0)[:, None, None, None] + np.zeros((3, 4, 22, 3)), ["a", "b", "c"])
+    batch = pf.Motion(
+        np.arange(3.0)[:, None, None, None] + np.zeros((3, 4, 22, 3)), ["a", "b", "c"]
+    )
     assert batch[1].prompt == "b"
     assert batch[-1].positions.shape == (4, 22, 3)
     assert batch[2].positions[0, 0, 0] == 2

@@ -29,7 +29,13 @@ from projflow_lite.prior.network import PARENTS, Network
 from projflow_lite.prior.text import Vocabulary
 
 ROUNDS = 12
-"""How often each length comes up before new clips are made."""
+"""Batches of each length that are made at once."""
+
+REUSE = 3
+"""How often a batch is shown, each time with other noise: making clips costs a third of a step."""
+
+LENGTHS = 20.0
+"""How much lengths of bones count in the second round of a recipe."""
 
 SAVE_EVERY = 60.0
 """Seconds between two checkpoints."""
@@ -44,6 +50,8 @@ class Recipe:
         batch: motions in a step.
         learning_rate: highest learning rate; it warms up, stays, and falls to 0 over `decay`.
         decay: last share of the steps, over which the learning rate falls.
+        restart: step at which a second round begins, or 0 for none: the learning rate starts anew
+            at half its height and falls at once, and lengths of bones begin to count.
         prompt_dropout: share of motions shown without their prompt, for guidance.
         ema: decay of the average of the weights that is saved.
         lengths: frames; the steps take them in turn.
@@ -57,18 +65,19 @@ class Recipe:
     batch: int = 48
     learning_rate: float = 8e-4
     decay: float = 0.5
+    restart: int = 0
     prompt_dropout: float = 0.1
     ema: float = 0.999
-    lengths: tuple[int, ...] = (40, 60, 60, 80)
-    widths: tuple[int, int, int] = (96, 192, 256)
+    lengths: tuple[int, ...] = (20, 60, 32, 80, 60, 120, 48, 60, 80, 196)
+    widths: tuple[int, int] = (192, 288)
     bfloat16: bool = False
     seed: int = 0
 
 
 RECIPES = {
-    "smoke": Recipe(steps=20, batch=8, widths=(16, 24, 32)),
+    "smoke": Recipe(steps=20, batch=8, widths=(16, 24)),
     "classroom": Recipe(steps=2000, bfloat16=True),
-    "shipped": Recipe(steps=9000, bfloat16=True),
+    "shipped": Recipe(steps=18000, restart=12000, bfloat16=True),
 }
 
 
@@ -85,38 +94,51 @@ def flow_times(count: int, random: torch.Generator) -> torch.Tensor:
 
 
 def loss_of(
-    network: Network, u1: torch.Tensor, ids: torch.Tensor, random: torch.Generator
+    network: Network,
+    u1: torch.Tensor,
+    ids: torch.Tensor,
+    random: torch.Generator,
+    lengths: float = 0.0,
 ) -> torch.Tensor:
     """Flow-matching loss of a batch of motions.
 
     Besides positions, the error of velocities and of bone vectors is counted. Each is a quadratic
-    form of the same error, so the best prediction stays the conditional mean.
+    form of the same error, so the best prediction stays the conditional mean. Lengths of bones are
+    not quadratic: they count only late, where a mean of limbs is hardly shorter than a limb.
 
     Args:
         network: what is trained.
         u1: ``(batch, frames, 22, 3)`` clean motions, centred and scaled.
         ids: ``(batch, words)`` their prompts.
         random: where flow times and noise are drawn from.
+        lengths: how much an error in the length of a bone counts at the end of the flow.
     """
     t = flow_times(len(u1), random)
     u0 = torch.randn(u1.shape, generator=random)
     share = t.view(-1, 1, 1, 1)
     error = network((1 - share) * u0 + share * u1, t, ids) - u1
-    bones = error[:, :, 1:] - error[:, :, list(PARENTS[1:])]
+    true, bones = (x[:, :, 1:] - x[:, :, list(PARENTS[1:])] for x in (u1, error))
     quadratic = (
         error.square().mean((1, 2, 3))
         + 2 * error.diff(dim=1).square().mean((1, 2, 3))
         + 2 * bones.square().mean((1, 2, 3))
     )
+    if lengths:
+        longer = (true + bones).norm(dim=-1) - true.norm(dim=-1)
+        quadratic = quadratic + lengths * t**8 * longer.square().mean((1, 2))
     # Eq. 3 divides by (1 - t)^2; the small constant keeps the last moments from drowning the rest.
     return (quadratic / ((1 - t).square() + 0.005)).mean()
 
 
 def learning_rate(recipe: Recipe, step: int) -> float:
-    """Warm up over 200 steps, stay, then fall along a half cosine to 0."""
-    warm = min(1.0, (step + 1) / min(200, recipe.steps))
-    begin = recipe.steps * (1 - recipe.decay)
-    fall = max(0.0, (step - begin) / max(1.0, recipe.steps - begin))
+    """Warm up over 200 steps, stay, then fall along a half cosine to 0; see `Recipe.restart`."""
+    if recipe.restart and step >= recipe.restart:
+        fall = (step - recipe.restart) / (recipe.steps - recipe.restart)
+        return 0.25 * recipe.learning_rate * (1 + math.cos(math.pi * fall))
+    steps = recipe.restart or recipe.steps
+    warm = min(1.0, (step + 1) / min(200, steps))
+    begin = steps * (1 - recipe.decay)
+    fall = max(0.0, (step - begin) / max(1.0, steps - begin))
     return recipe.learning_rate * warm * 0.5 * (1 + math.cos(math.pi * fall))
 
 
@@ -149,12 +171,13 @@ class Trainer:
     def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
         """Motions and prompts of the current step."""
         lengths = self.recipe.lengths
-        number, place = divmod(self.step, ROUNDS * len(lengths))
+        number, place = divmod(self.step, REUSE * ROUNDS * len(lengths))
         if self.chunk is None or self.chunk[0] != number:
             random = np.random.default_rng([self.recipe.seed, number])
             self.chunk = number, [self.clips(frames, random) for frames in lengths]
         turn, which = divmod(place, len(lengths))
-        part = slice(turn * self.recipe.batch, (turn + 1) * self.recipe.batch)
+        first = turn % ROUNDS * self.recipe.batch
+        part = slice(first, first + self.recipe.batch)
         u1, ids = self.chunk[1][which]
         return u1[part], ids[part]
 
@@ -170,7 +193,8 @@ class Trainer:
         """Make one step; return its loss."""
         random = torch.Generator().manual_seed(self.recipe.seed * 1_000_003 + self.step)
         with torch.autocast("cpu", torch.bfloat16, enabled=self.recipe.bfloat16):
-            loss = loss_of(self.network, *self.batch(), random)
+            second = self.recipe.restart and self.step >= self.recipe.restart
+            loss = loss_of(self.network, *self.batch(), random, LENGTHS if second else 0.0)
         if not torch.isfinite(loss):
             raise ValueError(f"train: the loss is {loss.item()} at step {self.step}; learn slower")
         self.optimiser.zero_grad()

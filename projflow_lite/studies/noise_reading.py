@@ -22,7 +22,7 @@ from projflow_lite import scores
 from projflow_lite.constraints import pin
 from projflow_lite.prior import Prior
 from projflow_lite.projection import Projector, kinematic_joint_metric
-from projflow_lite.samplers import Guides, guided, projflow, sample
+from projflow_lite.samplers import Guides, flow_times, guided, projflow, sample
 from projflow_lite.skeleton import joint_index
 
 FRAMES = 60
@@ -69,7 +69,7 @@ def controlled(
 
     generator = torch.Generator().manual_seed(seed)
     x0 = prior.noise_std * torch.randn(clips.positions.shape, generator=generator)
-    times = torch.linspace(0, 1, steps + 1).tolist()
+    times = flow_times(steps)
     with torch.inference_mode():
         field = guided(prior, guidance)
         x = projflow(

@@ -106,7 +106,7 @@ class Server:
             )
         self._wait()
 
-    def _wait(self, seconds: float = 40.0) -> None:
+    def _wait(self, seconds: float = 90.0) -> None:
         end = time.monotonic() + seconds
         while time.monotonic() < end and self.process.poll() is None:
             try:

@@ -6,11 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from scipy.interpolate import BSpline
 
 import projflow_lite as pf
-from projflow_lite.prior.network import bones_to_positions
+from projflow_lite.prior.network import bones_to_positions, draw, spline_kernel
 from projflow_lite.prior.text import TextEncoder, Vocabulary
-from projflow_lite.prior.training import RECIPES, Trainer, loss_of, train
+from projflow_lite.prior.training import RECIPES, Trainer, learning_rate, loss_of, train
 from projflow_lite.skeleton import EDGES
 
 SMOKE = replace(RECIPES["smoke"], steps=6, batch=4)
@@ -34,7 +35,31 @@ def test_bone_vectors_add_up_along_the_skeleton():
         torch.testing.assert_close(positions[child] - positions[parent], bones[child])
 
 
-@pytest.mark.parametrize("frames", [40, 59, 60, 77, 80])
+def test_the_spline_is_scipys():
+    points = np.random.default_rng(0).normal(size=12)
+    ours = draw(torch.as_tensor(points)[None, None], spline_kernel().double())[0, 0].numpy()
+    # Point k lies at frame 2 k + 0.5; scipy's basis on knots two frames apart peaks at its middle.
+    knots = 2.0 * np.arange(-2, 14) + 0.5
+    curve = BSpline(knots, points, 3, extrapolate=False)
+    np.testing.assert_allclose(ours[3:-3], curve(np.arange(3, 21)), atol=1e-6)
+
+
+def test_the_spline_goes_on_as_a_straight_line():
+    points = torch.stack([2.0 * torch.arange(9) + 0.5, torch.full((9,), 3.0)])[None]
+    frames = torch.stack([torch.arange(18.0), torch.full((18,), 3.0)])[None]
+    torch.testing.assert_close(draw(points, spline_kernel()), frames)
+
+
+def test_nothing_trembles_faster_than_the_control_points(trained):
+    """Whatever the input, less than a hundredth of the output's power lies above 7 Hz."""
+    prior, _ = trained
+    out = prior.endpoint(torch.randn(4, 80, 22, 3), 0.9)[:, 8:72] - prior.mean
+    power = torch.fft.rfft(out * torch.hann_window(64).view(1, -1, 1, 1), dim=1).abs().square()
+    frequency = torch.fft.rfftfreq(64, 1 / 20)
+    assert power[:, frequency > 7].sum() < 0.01 * power[:, frequency > 0.5].sum()
+
+
+@pytest.mark.parametrize("frames", [20, 21, 59, 60, 77, 196])
 def test_velocity_points_from_where_we_are_to_the_endpoint(trained, frames):
     prior, _ = trained
     x = prior.noise_std * torch.randn(2, frames, 22, 3)
@@ -117,7 +142,7 @@ def test_a_checkpoint_comes_back_as_it_was(trained, tmp_path):
     assert again.vocabulary.words == prior.vocabulary.words
     assert (again.noise_std, again.lengths, again.recipe) == (
         prior.noise_std,
-        (40, 80),
+        (20, 196),
         prior.recipe,
     )
 
@@ -156,7 +181,7 @@ def test_wrong_shapes_lengths_and_prompts_are_refused(trained):
     ):
         prior(torch.zeros(60, 22, 3), 0.5)
     with pytest.raises(
-        ValueError, match="prior: 500 frames; it was trained on motions of 40 to 80"
+        ValueError, match="prior: 500 frames; it was trained on motions of 20 to 196"
     ):
         pf.sample(prior, frames=500)
     with pytest.raises(ValueError, match="prompt: 3 prompts for 2 motions"):
@@ -168,3 +193,24 @@ def test_the_log_has_a_line_every_fifty_steps(tmp_path):
     line = json.loads((tmp_path / "loss.jsonl").read_text())
     assert line["step"] == 50
     assert np.isfinite(line["loss"])
+
+
+def test_a_second_round_starts_the_learning_rate_anew_at_half_its_height():
+    recipe = replace(RECIPES["classroom"], steps=1500, restart=1000, learning_rate=1.0)
+    rates = [learning_rate(recipe, step) for step in range(1500)]
+    assert max(rates[:1000]) == 1
+    assert rates[999] < 1e-4
+    assert rates[1000] == 0.5
+    assert max(rates[1000:]) == 0.5
+    assert rates[-1] < 1e-4
+
+
+def test_lengths_of_bones_count_only_when_asked_for_and_late(trained):
+    network, ids = trained[0].network, torch.zeros(64, 4, dtype=torch.long)
+    u1 = torch.randn(64, 20, 22, 3)
+
+    def loss(**options):
+        return loss_of(network, u1, ids, torch.Generator().manual_seed(0), **options)
+
+    assert loss(lengths=20.0) > loss()
+    assert loss(lengths=0.0) == loss()

@@ -8,7 +8,7 @@ import torch
 
 import projflow_lite as pf
 from projflow_lite import equations
-from projflow_lite.samplers import euler, guided, projflow
+from projflow_lite.samplers import euler, flow_times, guided, projflow
 from projflow_lite.samplers.projflow import fresh_share
 
 MEAN = torch.randn(12, 22, 3, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
@@ -137,7 +137,8 @@ def test_a_callback_sees_variances_and_residuals():
 def test_times_may_be_given():
     wish = pf.pin("head", 3, [0, 1, 2])
     even = sample(wish, steps=4).positions
-    np.testing.assert_array_equal(even, sample(wish, steps=[0, 0.25, 0.5, 0.75, 1]).positions)
+    np.testing.assert_array_equal(even, sample(wish, steps=flow_times(4)).positions)
+    assert flow_times(4) == [0, 0.4375, 0.75, 0.9375, 1]
     uneven = sample(wish, steps=np.array([0, 0.5, 0.8, 0.95, 1.0]))
     assert uneven.residual < 1e-6
     assert np.abs(even - uneven.positions).max() > 1e-3
