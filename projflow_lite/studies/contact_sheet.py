@@ -15,6 +15,12 @@ from projflow_lite.prior import Prior
 from projflow_lite.samplers import sample
 from projflow_lite.studies.noise_reading import HELD_OUT_SEED
 
+SHOWN = (
+    "walk", "run", "sneak", "walk_turn", "jump", "hop", "sit", "lunge", "kick", "throw", "wave",
+    "walk_and_carry",
+)  # fmt: skip
+"""Actions on the small sheet."""
+
 
 def heart(frames: int, centre: tuple[float, float] = (-0.38, 1.28), size: float = 0.2) -> NDArray:
     """A heart in the x-y plane, ``(frames, 2)`` metres, drawn once."""
@@ -30,7 +36,10 @@ def heart_wish(frames: int = 60) -> Wish:
 
 
 def run(prior: Prior, folder: Path, frames: int = 60, seed: int = 0) -> list[Path]:
-    """Draw ``actions.png`` (generated), ``data.png`` (synthetic data) and ``heart.gif``.
+    """Draw every action, generated and synthetic, a dozen of them, and a wish.
+
+    The files are ``all_actions.png`` (generated), ``data.png`` (synthetic), ``actions.png`` (the
+    generated ones of `SHOWN`) and ``heart.gif``.
 
     Args:
         prior: what generates.
@@ -49,7 +58,12 @@ def run(prior: Prior, folder: Path, frames: int = 60, seed: int = 0) -> list[Pat
         prior, heart_wish(frames), "a person waves with the right hand", frames, seed=seed
     )
     prompts.append(f"{wished.prompt}; its wrist is pinned to a heart (dots)")
-    contact_sheet([*batch, wished], folder / "actions.png", titles=prompts, columns=2)
+    made = [*batch, wished]
+    contact_sheet(made, folder / "all_actions.png", titles=prompts, columns=2)
+    few = [ACTIONS.index(name) for name in SHOWN]
+    titles = [prompts[k] for k in few]
+    contact_sheet([made[k] for k in few], folder / "actions.png", titles=titles, columns=2)
     contact_sheet(data, folder / "data.png", columns=2)
     film(wished, folder / "heart.gif", yaw=15, trail="right_wrist")
-    return [folder / name for name in ("actions.png", "data.png", "heart.gif")]
+    names = ("actions.png", "all_actions.png", "data.png", "heart.gif")
+    return [folder / name for name in names]

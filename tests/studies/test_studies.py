@@ -48,7 +48,12 @@ def test_held_out_motion_has_perfect_bones_in_the_table(prior):
 
 def test_pictures_show_every_action(prior, tmp_path):
     paths = contact_sheet.run(prior, tmp_path, frames=40)
-    assert [path.name for path in paths] == ["actions.png", "data.png", "heart.gif"]
+    assert [path.name for path in paths] == [
+        "actions.png",
+        "all_actions.png",
+        "data.png",
+        "heart.gif",
+    ]
     assert all(path.stat().st_size > 10_000 for path in paths)
     assert len(ACTIONS) >= 8
 
