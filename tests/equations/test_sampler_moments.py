@@ -72,7 +72,7 @@ def test_the_torch_sampler_has_this_law(noise, eta):
     x = projflow(
         lambda x, t, text: torch.from_numpy(velocity(x.numpy(), t)),
         lambda x1_hat, t: x1_hat @ matrix + offset,
-        x0, times.tolist(), generator, noise=noise, eta=eta,
+        x0, times.tolist(), generator, noise=noise, eta="paper" if eta is None else eta,
     )  # fmt: skip
     moments = eq.sampler_moments(MEAN, COVARIANCE, times, lambda t: (M, c), noise, eta)
     assert_has_law(x.numpy(), *moments)
