@@ -30,8 +30,8 @@ HELD_OUT_SEED = 987_654
 """Far from the seeds that training draws its clips from."""
 
 READINGS: dict[str, dict[str, Any]] = {
-    "original": {"noise": "original", "eta": None},
-    "implied": {"noise": "implied", "eta": None},
+    "original": {"noise": "original", "eta": "paper"},
+    "implied": {"noise": "implied", "eta": "paper"},
     "implied, none fresh": {"noise": "implied", "eta": 0.0},
 }
 
