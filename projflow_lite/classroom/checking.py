@@ -13,6 +13,7 @@ import numpy as np
 from .attempt import Outcome, agree, as_arrays, attempt, deviation
 from .bank import wrong_answers
 from .exercise import Case, Exercise
+from .formula import as_function, is_formula
 from .shelf import EXERCISES, find
 from .verdict import Verdict
 
@@ -28,7 +29,8 @@ def check(id: str, function: Callable[..., Any], seed: int = 0) -> Verdict:
 
     Args:
         id: the exercise, such as ``"projflow:7"``; `exercises` lists them.
-        function: the function to check, with the signature that the exercise asks for.
+        function: the function to check, with the signature that the exercise asks for; or, where
+            the answer is a formula, a sympy expression in symbols of those names.
         seed: draws other cases.
 
     Returns:
@@ -39,7 +41,11 @@ def check(id: str, function: Callable[..., Any], seed: int = 0) -> Verdict:
     """
     exercise = find(id, "check")
     cases, expected = standard(exercise.id, seed)
-    refusal = _cannot_be_called(exercise, function, cases[0])
+    said = ""
+    if is_formula(function):
+        found = as_function(function, exercise.parameters)
+        said, function = (found, function) if isinstance(found, str) else ("", found)
+    refusal = said or _cannot_be_called(exercise, function, cases[0])
     if refusal:
         return _verdict(exercise, cases, problem=refusal)
     outcomes = _attempts(exercise, function, cases)
