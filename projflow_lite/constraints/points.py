@@ -26,6 +26,7 @@ from projflow_lite.constraints.wish import (
     columns_of,
     coordinate_rows,
     difference_rows,
+    stack,
     weighted_rows,
 )
 from projflow_lite.motion import Motion
@@ -190,13 +191,6 @@ def velocity_closes(joints: NDArray, frames: int) -> Rows:
     columns = np.stack(at, axis=1)
     weights = np.array([1.0, -1.0, -1.0, 1.0])
     return weighted_rows(columns, weights, np.zeros(len(columns)), frames)
-
-
-def stack(parts: list[Rows]) -> Rows:
-    """Several sets of rows as one."""
-    return Wish(tuple(Term("", lambda total, part=part: part) for part in parts)).rows(  # type: ignore[misc]
-        parts[0].A.shape[1] // (N_JOINTS * 3)
-    )
 
 
 def keep(

@@ -83,12 +83,7 @@ class Wish:
         """
         if not isinstance(frames, int | np.integer) or frames < 1:
             raise ValueError(f"rows: frames is a whole number of at least 1, not {frames!r}")
-        parts = [term.build(int(frames)) for term in self.terms]
-        return Rows(
-            sparse.vstack([part.A for part in parts], format="csr"),
-            np.concatenate([part.y for part in parts]),
-            np.concatenate([part.variance for part in parts]),
-        )
+        return stack([term.build(int(frames)) for term in self.terms])
 
     def operator(self, frames: int) -> LinearOperator:
         """``A`` as a scipy linear operator ``(m, frames * 22 * 3)``, for scipy's solvers.
@@ -122,6 +117,15 @@ class Wish:
         std = np.zeros(len(joint_frames))
         np.maximum.at(std, point, np.sqrt(variance[single]))
         return Markers(joint_frames // N_JOINTS, joint_frames % N_JOINTS, target, std)
+
+
+def stack(parts: list[Rows]) -> Rows:
+    """Several sets of rows, about motions of one length, as one."""
+    return Rows(
+        sparse.vstack([part.A for part in parts], format="csr"),
+        np.concatenate([part.y for part in parts]),
+        np.concatenate([part.variance for part in parts]),
+    )
 
 
 def is_coordinate(A: sparse.csr_matrix) -> NDArray[np.bool_]:

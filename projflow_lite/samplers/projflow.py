@@ -117,7 +117,7 @@ def fresh_share(eta: Callable[[float], float] | float | str, t: float, t_next: f
     if eta == "ddpm":
         return 1.0 - (t * (1 - t_next) / ((1 - t) * t_next)) ** 2
     share = eta(t_next) if callable(eta) else eta
-    if isinstance(share, str) or not isinstance(share, int | float):
+    if not isinstance(share, int | float):
         raise ValueError(f"projflow: eta is 'paper', 'ddpm', a number or a function, not {eta!r}")
     if not 0 <= share <= 1:
         raise ValueError(f"projflow: eta is a share of 0 to 1, not {share}")

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 from scipy.spatial.distance import cdist
 from tqdm.auto import tqdm
 
+from projflow_lite.scores import interval
 from projflow_lite.studies import posterior_worlds as worlds
 from projflow_lite.studies.posterior_exact import plain
 from projflow_lite.studies.posterior_worlds import CHOICES, World
@@ -38,11 +38,10 @@ def compare(world: World, x: NDArray, seed: int) -> dict[str, Any]:
 def repeat(make: Callable[[int], NDArray], world: World, seeds: int) -> dict[str, Any]:
     """Mean of each score over seeds, and half the width of its 95 % interval."""
     columns = [compare(world, make(seed), seed) for seed in range(seeds)]
-    t = stats.t.ppf(0.975, seeds - 1) / np.sqrt(seeds)
     scores: dict[str, Any] = {}
     for name in ("energy distance", "weight misplaced"):
-        values = np.array([column[name] for column in columns])
-        scores[name] = {"mean": plain(values.mean()), "half width": plain(t * values.std(ddof=1))}
+        mean, half = interval([column[name] for column in columns])
+        scores[name] = {"mean": plain(mean), "half width": plain(half)}
     weights = np.mean([column["weights"] for column in columns], axis=0)
     return scores | {"weights": [plain(w) for w in weights]}
 
