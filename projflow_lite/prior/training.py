@@ -73,6 +73,10 @@ class Recipe:
     bfloat16: bool = False
     seed: int = 0
 
+    def second_round(self, step: int) -> bool:
+        """Whether a step belongs to the second round."""
+        return 0 < self.restart <= step
+
 
 RECIPES = {
     "smoke": Recipe(steps=20, batch=8, widths=(16, 24)),
@@ -132,7 +136,7 @@ def loss_of(
 
 def learning_rate(recipe: Recipe, step: int) -> float:
     """Warm up over 200 steps, stay, then fall along a half cosine to 0; see `Recipe.restart`."""
-    if recipe.restart and step >= recipe.restart:
+    if recipe.second_round(step):
         fall = (step - recipe.restart) / (recipe.steps - recipe.restart)
         return 0.25 * recipe.learning_rate * (1 + math.cos(math.pi * fall))
     steps = recipe.restart or recipe.steps
@@ -193,8 +197,8 @@ class Trainer:
         """Make one step; return its loss."""
         random = torch.Generator().manual_seed(self.recipe.seed * 1_000_003 + self.step)
         with torch.autocast("cpu", torch.bfloat16, enabled=self.recipe.bfloat16):
-            second = self.recipe.restart and self.step >= self.recipe.restart
-            loss = loss_of(self.network, *self.batch(), random, LENGTHS if second else 0.0)
+            lengths = LENGTHS if self.recipe.second_round(self.step) else 0.0
+            loss = loss_of(self.network, *self.batch(), random, lengths)
         if not torch.isfinite(loss):
             raise ValueError(f"train: the loss is {loss.item()} at step {self.step}; learn slower")
         self.optimiser.zero_grad()
