@@ -195,6 +195,34 @@ class Lab:
             self.page.mouse.move(*place, steps=3)
         self.page.mouse.up()
 
+    def drag_handle(
+        self, board: int, name: str, right: float, down: float = 0.0, steps: int = 12
+    ) -> None:
+        """Drag a handle of the `board`-th board of the page by so many pixels."""
+        handle = self.page.locator(".pf-board").nth(board).locator(f"[data-name='{name}']")
+        x, y = self._grab(handle)
+        for i in range(1, steps + 1):
+            self.page.mouse.move(x + right * i / steps, y + down * i / steps)
+            self.page.wait_for_timeout(25)
+        self.page.mouse.up()
+
+    def _grab(self, handle: Any, seconds: float = 20.0) -> tuple[float, float]:
+        """Press the mouse on a handle of a board; pictures above may still find their size."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            handle.scroll_into_view_if_needed()
+            box = handle.bounding_box()
+            self.page.wait_for_timeout(200)
+            if box is None or box != handle.bounding_box():
+                continue
+            x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+            self.page.mouse.move(x, y)
+            self.page.mouse.down()
+            if handle.evaluate("(node) => node.classList.contains('pf-held')"):
+                return x, y
+            self.page.mouse.up()
+        raise AssertionError(f"the mouse could not take hold of {handle} in {seconds} s")
+
     def pixels(self, widget: str, index: int = 0) -> bytes:
         """The picture on a canvas as PNG bytes."""
         return self.canvas(widget, index).screenshot()

@@ -12,20 +12,6 @@ pytestmark = pytest.mark.browser
 NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 
 
-def drag_handle(lab, board, name, right, down, steps=12):
-    """Drag a handle of the `board`-th board of the page by so many pixels."""
-    handle = lab.page.locator(".pf-board").nth(board).locator(f".pf-handle[data-name='{name}']")
-    handle.scroll_into_view_if_needed()
-    box = handle.bounding_box()
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    lab.page.mouse.move(x, y)
-    lab.page.mouse.down()
-    for i in range(1, steps + 1):
-        lab.page.mouse.move(x + right * i / steps, y + down * i / steps)
-        lab.page.wait_for_timeout(25)
-    lab.page.mouse.up()
-
-
 def test_means_that_are_dragged_take_the_flow_along(jupyter_lab):
     lab = jupyter_lab(NOTEBOOKS / "01_flow_in_the_plane.ipynb", width=1100, height=1000)
     lab.run_all(seconds=120)
@@ -35,7 +21,7 @@ def test_means_that_are_dragged_take_the_flow_along(jupyter_lab):
         lab.page.wait_for_timeout(200)
         lab.screenshot(f"flow_in_the_plane_{board}")
 
-    drag_handle(lab, 1, "probe", 60, -40)
+    lab.drag_handle(1, "probe", 60, -40)
     # Each question is one expression: between two of them the kernel may hear another move.
     lab.wait_for("np.linalg.norm(np.subtract(crossing.positions['probe'], (0.5, 0.3))) > 0.8")
     probe = "np.array(crossing.positions['probe'])"
@@ -44,7 +30,7 @@ def test_means_that_are_dragged_take_the_flow_along(jupyter_lab):
     np.testing.assert_allclose(tip, mean_end, atol=0.15)  # x1_hat, of 200 paths near x
 
     before = np.array(lab.ask("river.paths[-1].mean(axis=0)"))
-    drag_handle(lab, 2, "m1", -110, 60)
+    lab.drag_handle(2, "m1", -110, 60)
     lab.wait_for("abs(river.positions['m1'][0] - 1.8) > 1")
     mean, after = np.array(lab.ask("[river.positions['m1'], river.paths[-1].mean(axis=0)]"))
     shift = mean - [1.8, 1.0]
@@ -63,7 +49,7 @@ def test_the_projection_follows_the_wish(jupyter_lab):
         lab.page.wait_for_timeout(200)
         lab.screenshot(f"the_projection_{board}")
 
-    drag_handle(lab, 0, "y", 60, 30)
+    lab.drag_handle(0, "y", 60, 30)
     lab.wait_for("np.hypot(*board.positions['y']) > 1.4")
     drawn = "np.frombuffer(board.data, '<f4').reshape(-1, 2)[-1]"
     answer = lab.ask(f"[*read_board()[:4], {drawn}, board.positions['y']]")
@@ -74,7 +60,7 @@ def test_the_projection_follows_the_wish(jupyter_lab):
     slope = across @ R @ (end - x1_hat)
     assert slope == pytest.approx(0, abs=1e-4), "and no neighbour on the line is cheaper"
 
-    drag_handle(lab, 2, "y2", -60, 20)
+    lab.drag_handle(2, "y2", -60, 20)
     lab.wait_for("two.problem != ''")
     problem = lab.page.locator(".pf-board-problem").nth(2)
     problem.wait_for(timeout=5_000)

@@ -12,29 +12,13 @@ pytestmark = pytest.mark.browser
 NOTEBOOK = Path(__file__).parents[2] / "notebooks" / "04_the_sampler_step_by_step.ipynb"
 
 
-def drag_handle(lab, board: int, name: str, right: float, steps: int = 8) -> None:
-    """Drag a handle of the `board`-th board of the page by so many pixels to the right."""
-    handle = lab.page.locator(".pf-board").nth(board).locator(f".pf-handle[data-name='{name}']")
-    handle.scroll_into_view_if_needed()
-    box = None
-    while box != (box := handle.bounding_box()):  # pictures above may still be finding their size
-        lab.page.wait_for_timeout(300)
-    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    lab.page.mouse.move(x, y)
-    lab.page.mouse.down()
-    for i in range(1, steps + 1):
-        lab.page.mouse.move(x + right * i / steps, y)
-        lab.page.wait_for_timeout(30)
-    lab.page.mouse.up()
-
-
 def test_the_sampler_follows_the_wish_and_every_choice(jupyter_lab):
     lab = jupyter_lab(NOTEBOOK, width=1100, height=1000)
     lab.run_all(seconds=150)
     assert lab.page.locator(".pf-board").count() == 4
     lab.screenshot("known_posterior_top", top=".jp-OutputArea")
 
-    drag_handle(lab, 0, "y", 70)
+    lab.drag_handle(0, "y", 70)
     lab.wait_for("explorer.world.y[0] > 0.3 and explorer.plane.seen > 3")
     y = lab.ask("explorer.world.y[0]")
     ends = np.array(lab.ask("explorer.trace.x_next[-1]"))
@@ -63,7 +47,7 @@ def test_the_exact_law_moves_onto_the_posterior_with_the_right_metric(jupyter_la
     lab.page.get_by_label("noise").nth(1).select_option("guided")
     lab.wait_for("metric.value == 'moving' and noise.value == 'guided'")
     assert lab.ask(far) < 1e-9
-    drag_handle(lab, 2, "y", -60)
+    lab.drag_handle(2, "y", -60)
     lab.wait_for("board.positions['y'][0] < 0.7")
     assert lab.ask(far) < 1e-9
     assert "error of the mean 0.00 posterior" in lab.ask("report.value")
