@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from projflow_lite.skeleton import FPS, bone_lengths, check_positions, joint_index
+from projflow_lite.skeleton import FPS, bone_lengths, check_positions, joint_index, shown
 
 if TYPE_CHECKING:
     from projflow_lite.constraints import Wish
@@ -27,7 +27,8 @@ class Motion:
         fps: frames per second.
 
     Raises:
-        ValueError: if the shape does not end in ``(frames, 22, 3)`` or a value is not finite.
+        ValueError: if the shape does not end in ``(frames, 22, 3)``, a value is not finite, or
+            there is not one prompt for each motion.
     """
 
     positions: NDArray
@@ -37,6 +38,15 @@ class Motion:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "positions", check_positions(self.positions, "Motion"))
+        texts = self.prompt if isinstance(self.prompt, list) else [self.prompt] * len(self)
+        if len(texts) != len(self) or not all(isinstance(text, str | None) for text in texts):
+            raise ValueError(
+                f"Motion: one prompt for each of {len(self)} motions, not {shown(self.prompt)}"
+            )
+        if self.wish is not None and not hasattr(self.wish, "markers"):
+            raise ValueError(f"Motion: not a wish: {shown(self.wish)}")
+        if not isinstance(self.fps, int | float | np.number) or not 0 < self.fps < np.inf:
+            raise ValueError(f"Motion: fps is a number above 0, not {shown(self.fps)}")
 
     @property
     def frames(self) -> int:
@@ -65,7 +75,10 @@ class Motion:
 
         Raises:
             IndexError: if the batch has no such motion.
+            TypeError: if the index is no whole number.
         """
+        if isinstance(index, bool) or not isinstance(index, int | np.integer):
+            raise TypeError(f"Motion: an index is a whole number, not {shown(index)}")
         if not -len(self) <= index < len(self):
             raise IndexError(f"Motion: index {index} in a batch of {len(self)}")
         batch = self.positions.reshape(-1, *self.positions.shape[-3:])
@@ -88,17 +101,19 @@ class Motion:
         """Read a file written by `save`; the wish is not stored.
 
         Raises:
+            FileNotFoundError: if there is no such file.
             ValueError: if the file is damaged or is not a motion; the message names it.
         """
+        if isinstance(path, str | Path) and not Path(path).exists():
+            raise FileNotFoundError(f"Motion.load: there is no file at {path}")
         try:
             with np.load(path, allow_pickle=False) as data:
                 positions, fps = data["positions"], float(data["fps"])
                 prompts = [str(text) for text in data["prompt"]]
-        except FileNotFoundError:
-            raise
+            single = prompts[0] if len(prompts) == 1 else None
+            return cls(positions, prompt=single if len(prompts) <= 1 else prompts, fps=fps)
         except Exception as error:
+            reason = str(error).split(". ")[0]  # the first sentence says what, the others advise
             raise ValueError(
-                f"Motion.load: {path} is not a readable motion file ({error})"
+                f"Motion.load: {path} is not a readable motion file ({reason})"
             ) from error
-        single = prompts[0] if len(prompts) == 1 else None
-        return cls(positions, prompt=single if len(prompts) <= 1 else prompts, fps=fps)

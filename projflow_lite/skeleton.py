@@ -6,7 +6,7 @@ An array of positions always ends in ``(..., frames, joints, 3)``.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
 from difflib import get_close_matches
 from itertools import pairwise
 
@@ -101,6 +101,50 @@ MASS: tuple[float, ...] = tuple(mass_shares())
 """Share of the body's mass at every joint: ``MASS @ positions`` is the centre of mass."""
 
 
+THE_JOINTS = (
+    "the joints are pelvis, spine1 to spine3, neck, head, and left_ or right_ "
+    "hip, knee, ankle, foot, collar, shoulder, elbow, wrist"
+)
+
+
+def shown(value: object) -> str:
+    """A value for an error message: on one line, and shortened if it is long."""
+    shape = getattr(value, "shape", ())
+    if hasattr(value, "dtype") and isinstance(shape, tuple) and shape:
+        return f"an array of shape {tuple(shape)}"
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 48 else f"{text[:45]}..."
+
+
+KINDS = {
+    "b": "True and False", "c": "complex numbers", "U": "text", "S": "bytes",
+    "M": "dates", "m": "times", "O": "mixed things", "V": "records",
+}  # fmt: skip
+"""What numpy calls by a letter, where numbers are due."""
+
+
+def number_array(value: object, what: str) -> NDArray:
+    """Return `value` as an array of real numbers, or say that it is none.
+
+    numpy would read the text "1.5" as a number, take True for 1, drop what is imaginary and look
+    under a mask without a word.
+
+    Raises:
+        ValueError: if it is not a regular array of real numbers.
+    """
+    wrong = None
+    try:
+        array = np.asarray(value)
+        wrong = KINDS.get(array.dtype.kind)
+    except Exception:  # lists of lists that differ in length, tensors on a graph, ...
+        wrong = "rows of different lengths" if isinstance(value, list | tuple) else shown(value)
+    if np.ma.is_masked(value):
+        wrong = "masked numbers"
+    if wrong is not None:
+        raise ValueError(f"{what} should be a regular array of numbers, not {wrong}")
+    return array
+
+
 def joint_index(joint: str | int, who: str = "joint_index") -> int:
     """Index of one joint, from its name or from the index itself.
 
@@ -115,10 +159,10 @@ def joint_index(joint: str | int, who: str = "joint_index") -> int:
         if joint in JOINTS:
             return JOINTS.index(joint)
         near = get_close_matches(joint.lower().replace(" ", "_"), JOINTS, n=1)
-        hint = f"did you mean '{near[0]}'?" if near else f"the joints are {', '.join(JOINTS)}"
-        raise ValueError(f"{who}: '{joint}' is not a joint; {hint}")
+        hint = f"did you mean '{near[0]}'?" if near else THE_JOINTS
+        raise ValueError(f"{who}: {shown(joint)} is not a joint; {hint}")
     if isinstance(joint, bool) or not isinstance(joint, int | np.integer):
-        raise ValueError(f"{who}: a joint is a name or an integer, not {joint!r}")
+        raise ValueError(f"{who}: a joint is a name or an integer, not {shown(joint)}")
     if not 0 <= joint < N_JOINTS:
         raise ValueError(f"{who}: joint {joint} is outside 0..{N_JOINTS - 1}")
     return int(joint)
@@ -128,8 +172,9 @@ def joint_indices(joints: str | int | Iterable[str | int], who: str = "joint_ind
     """Indices of one or several joints; see `joint_index`."""
     if isinstance(joints, str | int | np.integer):
         joints = [joints]
-    if not isinstance(joints, Iterable):
-        raise ValueError(f"{who}: a joint is a name or an integer, not {joints!r}")
+    # A set has no order in which positions could belong to its joints.
+    if not isinstance(joints, Iterable) or isinstance(joints, bytes | Set | Mapping):
+        raise ValueError(f"{who}: a joint is a name or an integer, not {shown(joints)}")
     indices = [joint_index(joint, who) for joint in joints]
     if not indices:
         raise ValueError(f"{who}: the list of joints is empty")
@@ -160,8 +205,8 @@ def check_positions(positions: Sequence | NDArray, who: str = "positions") -> ND
     Raises:
         ValueError: if the shape does not end in ``(frames, 22, 3)`` or a value is not finite.
     """
-    array = np.asarray(positions)
-    if array.ndim < 3 or array.shape[-2:] != (N_JOINTS, 3):
+    array = number_array(positions, f"{who}: positions")
+    if array.size == 0 or array.ndim < 3 or array.shape[-2:] != (N_JOINTS, 3):
         raise ValueError(f"{who}: expected shape (..., frames, {N_JOINTS}, 3), got {array.shape}")
     if not np.isfinite(array).all():
         frame, joint, axis = np.argwhere(~np.isfinite(array))[0][-3:]

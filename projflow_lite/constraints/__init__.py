@@ -9,6 +9,7 @@ from projflow_lite.constraints.linear import rows
 from projflow_lite.constraints.moving import acceleration, centre_of_mass, velocity
 from projflow_lite.constraints.points import keep, loop, offset, pin
 from projflow_lite.constraints.wish import (
+    AXES,
     Markers,
     Rows,
     Term,
@@ -20,6 +21,7 @@ from projflow_lite.constraints.wish import (
 )
 
 __all__ = [
+    "AXES",
     "Markers",
     "Orthographic",
     "Perspective",

@@ -14,14 +14,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from projflow_lite.constraints.checks import (
     check_frames,
+    check_numbers,
     check_std,
     check_values,
     every_frame,
     how_exactly,
     in_words,
+    is_number,
 )
 from projflow_lite.constraints.wish import Rows, Term, Wish, columns_of, weighted_rows
-from projflow_lite.skeleton import JOINTS, joint_index
+from projflow_lite.skeleton import JOINTS, joint_index, shown
 
 
 def rotation(pitch: float, yaw: float, roll: float) -> NDArray[np.float64]:
@@ -55,12 +57,12 @@ class Orthographic:
 
     def __post_init__(self) -> None:
         check_angles("Orthographic", self.pitch, self.yaw, self.roll)
-        if not 0 < self.scale < np.inf:
-            raise ValueError(f"Orthographic: scale is a number above 0, not {self.scale!r}")
+        check_above_zero("Orthographic: scale", self.scale)
 
     def project(self, x: NDArray) -> NDArray[np.float64]:
         """Picture ``(..., 2)`` of points ``(..., 3)``, metres."""
-        return self.scale * (np.asarray(x) @ rotation(self.pitch, self.yaw, self.roll)[:2].T)
+        points = check_points("Orthographic", x)
+        return self.scale * (points @ rotation(self.pitch, self.yaw, self.roll)[:2].T)
 
     def equations(self, points: NDArray) -> tuple[NDArray, NDArray]:
         """Weights ``(k, 2, 3)`` and targets ``(k, 2)``, metres, that points ``(k, 2)`` ask for."""
@@ -96,12 +98,12 @@ class Perspective:
 
     def __post_init__(self) -> None:
         check_angles("Perspective", self.pitch, self.yaw, self.roll)
-        if not 0 < self.focal < np.inf:
-            raise ValueError(f"Perspective: focal is a number above 0, not {self.focal!r}")
-        if np.shape(self.position) != (3,) or not np.isfinite(self.position).all():
-            raise ValueError(f"Perspective: position is three numbers, not {self.position!r}")
-        if np.shape(self.centre) != (2,) or not np.isfinite(self.centre).all():
-            raise ValueError(f"Perspective: centre is two numbers, not {self.centre!r}")
+        check_above_zero("Perspective: focal", self.focal)
+        for name, value, count in (("position", self.position, 3), ("centre", self.centre, 2)):
+            given = check_numbers(value, f"Perspective: {name}")
+            if given.shape != (count,) or not np.isfinite(given).all():
+                number = {2: "two", 3: "three"}[count]
+                raise ValueError(f"Perspective: {name} is {number} numbers, not {shown(value)}")
 
     def project(self, x: NDArray) -> NDArray[np.float64]:
         """Picture ``(..., 2)`` of points ``(..., 3)``, metres.
@@ -109,7 +111,8 @@ class Perspective:
         Raises:
             ValueError: for a point that is not ahead of the camera.
         """
-        seen = (np.asarray(x) - self.position) @ rotation(self.pitch, self.yaw, self.roll).T
+        points = check_points("Perspective", x)
+        seen = (points - self.position) @ rotation(self.pitch, self.yaw, self.roll).T
         if (seen[..., 2] >= 0).any():
             raise ValueError("Perspective: a point is not ahead of the camera")
         return np.asarray(self.centre) - self.focal * seen[..., :2] / seen[..., 2:]
@@ -145,7 +148,9 @@ def lift(
         ValueError: for something that is no camera, and as for `pin`.
     """
     if not isinstance(camera, Orthographic | Perspective):
-        raise ValueError(f"lift: camera is Orthographic(...) or Perspective(...), not {camera!r}")
+        raise ValueError(
+            f"lift: camera is Orthographic(...) or Perspective(...), not {shown(camera)}"
+        )
     j = joint_index(joint, "lift")
     check_std(std, "lift")
     listed, single = check_frames(frames, "lift")
@@ -166,5 +171,21 @@ def lift(
 
 def check_angles(who: str, *angles: float) -> None:
     """Refuse an angle that is no number."""
-    if not all(isinstance(a, int | float | np.number) and np.isfinite(a) for a in angles):
-        raise ValueError(f"{who}: pitch, yaw and roll are degrees, not {angles}")
+    if not all(is_number(angle) for angle in angles):
+        raise ValueError(f"{who}: pitch, yaw and roll are degrees, not {shown(angles)}")
+
+
+def check_above_zero(what: str, value: float) -> None:
+    """Refuse what is not a positive number."""
+    if not is_number(value) or value <= 0:
+        raise ValueError(f"{what} is a number above 0, not {shown(value)}")
+
+
+def check_points(who: str, x: ArrayLike) -> NDArray[np.float64]:
+    """Points of space as an array ``(..., 3)``, or say what is wrong with them."""
+    points = check_numbers(x, f"{who}: x")
+    if points.shape[-1:] != (3,):
+        raise ValueError(f"{who}: points have shape (..., 3), not {points.shape}")
+    if not np.isfinite(points).all():
+        raise ValueError(f"{who}: a point is not finite")
+    return points

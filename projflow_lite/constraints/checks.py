@@ -2,38 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Iterable, Mapping, Set
+from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from projflow_lite.constraints.wish import AXES
-from projflow_lite.skeleton import JOINTS
+from projflow_lite.skeleton import JOINTS, number_array, shown
 
 
 def check_axes(axes: str, who: str = "pin") -> NDArray[np.int64]:
     """Turn "xz" into ``[0, 2]``, or refuse it."""
     if not isinstance(axes, str) or not axes or set(axes) - set(AXES) or len(set(axes)) < len(axes):
-        raise ValueError(f"{who}: axes is some of 'xyz', each once, not {axes!r}")
+        raise ValueError(f"{who}: axes is some of 'xyz', each once, not {shown(axes)}")
     return np.array([AXES.index(axis) for axis in axes])
 
 
 def check_numbers(value: ArrayLike, what: str) -> NDArray[np.float64]:
-    """An array of numbers, or an error that says what is not one."""
-    try:
-        return np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(f"{what} should be a regular array of numbers") from None
+    """A float64 array of its own, or an error that says what is not one."""
+    return number_array(value, what).astype(np.float64)
+
+
+def is_number(value: object) -> bool:
+    """Whether it is one finite real number; True and False are none."""
+    number = isinstance(value, Real) and not isinstance(value, bool)
+    return number and math.isfinite(value)  # type: ignore[arg-type]
+
+
+def check_yes_or_no(who: str, **flags: bool) -> None:
+    """Refuse what is neither True nor False: any text would count as True."""
+    for name, flag in flags.items():
+        if not isinstance(flag, bool | np.bool_):
+            raise ValueError(f"{who}: {name} is True or False, not {shown(flag)}")
 
 
 def check_std(std: float, who: str = "pin", unit: str = "a length in metres") -> None:
     """Refuse a standard deviation that is negative or not finite."""
-    if (
-        isinstance(std, bool)
-        or not isinstance(std, int | float | np.number)
-        or not 0 <= std < np.inf
-    ):
-        raise ValueError(f"{who}: std is {unit}, 0 or more, not {std!r}")
+    if not is_number(std) or std < 0:
+        raise ValueError(f"{who}: std is {unit}, 0 or more, not {shown(std)}")
+    # Its square has to be a number too: one that vanishes would make a soft row hard.
+    if std != 0 and not 1e-100 < std < 1e100:
+        raise ValueError(f"{who}: a std of {std!r} has no square; 0 means exactly")
 
 
 def check_frames(
@@ -42,13 +53,16 @@ def check_frames(
     """Frames as an integer array (None stands for all of them), and whether it was just one."""
     if frames is None:
         return None, False
-    single = isinstance(frames, int | np.integer) and not isinstance(frames, bool)
-    if not single and not isinstance(frames, Iterable):
-        raise ValueError(f"{who}: frames is an integer or a list of integers, not {frames!r}")
-    listed = np.array([frames] if single else list(frames))  # type: ignore[arg-type]
-    if listed.ndim != 1 or len(listed) == 0 or listed.dtype.kind not in "iu":
-        raise ValueError(f"{who}: frames is an integer or a list of integers, not {frames!r}")
-    return listed.astype(np.int64), single
+    single = isinstance(frames, int | np.integer)
+    # A set has no order in which positions could belong to its frames; 0-d arrays do not iterate.
+    several = isinstance(frames, Iterable) and not isinstance(frames, str | Set | Mapping)
+    listed: list = [frames] if single else []
+    if several and np.ndim(frames) > 0:  # type: ignore[arg-type]
+        listed = list(frames)  # type: ignore[arg-type]
+    whole = all(isinstance(n, int | np.integer) and not isinstance(n, bool) for n in listed)
+    if not listed or not whole or max(abs(n) for n in listed) > 2**31:
+        raise ValueError(f"{who}: frames is an integer or a list of integers, not {shown(frames)}")
+    return np.array(listed, dtype=np.int64), single
 
 
 def check_values(

@@ -24,10 +24,19 @@ def rows(A: ArrayLike | sparse.spmatrix, y: ArrayLike, variance: ArrayLike = 0.0
         ValueError: if shapes do not fit, a value is not finite, a variance is negative, or a row
             is zero.
     """
-    dense_or_sparse = A if sparse.issparse(A) else np.atleast_2d(check_numbers(A, "rows: A"))
-    matrix = sparse.csr_matrix(dense_or_sparse)
+    if sparse.issparse(A):
+        check_numbers(sparse.coo_array(A).data, "rows: A")
+        matrix = sparse.csr_matrix(A, dtype=np.float64, copy=True)
+    else:
+        dense = np.atleast_2d(check_numbers(A, "rows: A"))
+        if dense.ndim > 2:
+            raise ValueError(f"rows: A is a matrix (m, frames * 22 * 3), not {dense.shape}")
+        matrix = sparse.csr_matrix(dense)
+    matrix.sum_duplicates()
     matrix.eliminate_zeros()
     m, columns = matrix.shape
+    if m == 0:
+        raise ValueError("rows: A has no row")
     target = check_numbers(y, "rows: y")
     spread = check_numbers(variance, "rows: variance")
     if columns == 0 or columns % (N_JOINTS * 3):

@@ -11,6 +11,7 @@ from projflow_lite.constraints.checks import (
     check_axes,
     check_finite,
     check_frames,
+    check_numbers,
     check_std,
     check_values,
     every_frame,
@@ -132,7 +133,7 @@ def centre_of_mass(
         ValueError: as for `pin`; for masses that are negative or do not sum to 1.
     """
     who = "centre_of_mass"
-    share = np.asarray(MASS if mass is None else mass, dtype=np.float64)
+    share = check_numbers(MASS if mass is None else mass, f"{who}: mass")
     if share.shape != (N_JOINTS,) or not (share >= 0).all() or abs(share.sum() - 1) > 1e-6:
         raise ValueError(f"{who}: mass is {N_JOINTS} shares, none negative, that sum to 1")
     axis = check_axes(axes, who)

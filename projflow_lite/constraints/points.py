@@ -14,6 +14,7 @@ from projflow_lite.constraints.checks import (
     check_numbers,
     check_std,
     check_values,
+    check_yes_or_no,
     every_frame,
     how_exactly,
     in_words,
@@ -30,7 +31,14 @@ from projflow_lite.constraints.wish import (
     weighted_rows,
 )
 from projflow_lite.motion import Motion
-from projflow_lite.skeleton import JOINTS, N_JOINTS, check_positions, joint_index, joint_indices
+from projflow_lite.skeleton import (
+    JOINTS,
+    N_JOINTS,
+    check_positions,
+    joint_index,
+    joint_indices,
+    shown,
+)
 
 
 def pin(
@@ -102,7 +110,8 @@ def offset(
     listed, _ = check_frames(frames, "offset")
     vector = check_numbers(d, "offset: d")
     count = "frames" if listed is None else len(listed)
-    if vector.shape != (3,) and (vector.ndim != 2 or vector.shape[1] != 3):
+    fits = vector.shape in ((3,), (count, 3)) or (listed is None and vector.shape[1:] == (3,))
+    if not fits or vector.ndim > 2:
         raise ValueError(f"offset: d should have shape (3,) or ({count}, 3), not {vector.shape}")
     if not np.isfinite(vector).all():
         raise ValueError("offset: d has a value that is not finite")
@@ -142,7 +151,8 @@ def loop(
     chosen = np.array(joint_indices(range(N_JOINTS) if joints is None else joints, "loop"))
     vector = np.zeros(3) if shift is None else check_numbers(shift, "loop: shift")
     if vector.shape != (3,) or not np.isfinite(vector).all():
-        raise ValueError(f"loop: shift should be three finite numbers, not {shift!r}")
+        raise ValueError(f"loop: shift should be three finite numbers, not {shown(shift)}")
+    check_yes_or_no("loop", moving=moving, smooth=smooth)
     if moving and shift is not None:
         raise ValueError("loop: a moving loop leaves the shift open; give shift or moving=True")
 
@@ -219,6 +229,12 @@ def keep(
     frame = np.arange(len(positions)) if listed is None else inside(listed, len(positions), "keep")
     values = positions[frame][:, chosen]
     wish = pin(chosen, None if listed is None else frame, values, std=std)
+
+    def build(total: int) -> Rows:
+        if listed is None and total != len(positions):
+            raise ValueError(f"keep: {len(positions)} frames to keep in a motion of {total} frames")
+        return wish.rows(total)
+
     names = ", ".join(JOINTS[j] for j in chosen)
     words = f"{names} kept as they are at {in_words(listed)}, {how_exactly(std)}"
-    return Wish((Term(words, wish.terms[0].build),))
+    return Wish((Term(words, build),))

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, aslinearoperator
 
-from projflow_lite.skeleton import JOINTS, N_JOINTS
+from projflow_lite.skeleton import JOINTS, N_JOINTS, check_positions, shown
 
 AXES = "xyz"
 
@@ -61,15 +61,38 @@ class Term(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Wish:
-    """One or several constraints, stacked with ``&``. Made by `pin` and its neighbours."""
+    """One or several constraints, stacked with ``&``. Made by `pin` and its neighbours.
+
+    Raises:
+        ValueError: without a constraint.
+    """
 
     terms: tuple[Term, ...]
 
+    def __post_init__(self) -> None:
+        terms = self.terms if isinstance(self.terms, tuple) else ()
+        if not terms or not all(isinstance(term, Term) for term in terms):
+            raise ValueError(f"Wish: made by pin and its neighbours, not of {shown(self.terms)}")
+
     def __and__(self, other: Wish) -> Wish:
-        """Ask for both."""
+        """Ask for both.
+
+        Raises:
+            TypeError: for something that is no wish.
+        """
         if not isinstance(other, Wish):
-            return NotImplemented
+            raise TypeError(f"Wish: & stacks a wish and a wish, not {shown(other)}")
         return Wish(self.terms + other.terms)
+
+    __rand__ = __and__
+
+    def __bool__(self) -> bool:
+        """A wish is neither true nor false, or ``a and b`` would silently be b alone.
+
+        Raises:
+            TypeError: always.
+        """
+        raise TypeError("Wish: a wish is neither true nor false; stack wishes with &, not 'and'")
 
     def __repr__(self) -> str:
         """Say in words what is asked for."""
@@ -81,8 +104,9 @@ class Wish:
         Raises:
             ValueError: if a constraint names a frame that the motion does not have.
         """
-        if not isinstance(frames, int | np.integer) or frames < 1:
-            raise ValueError(f"rows: frames is a whole number of at least 1, not {frames!r}")
+        whole = isinstance(frames, int | np.integer) and not isinstance(frames, bool)
+        if not whole or frames < 1:
+            raise ValueError(f"rows: frames is a whole number of at least 1, not {shown(frames)}")
         return stack([term.build(int(frames)) for term in self.terms])
 
     def operator(self, frames: int) -> LinearOperator:
@@ -98,7 +122,11 @@ class Wish:
 
         Args:
             positions: ``(..., frames, 22, 3)``, metres.
+
+        Raises:
+            ValueError: for another shape, or a length that the wish was not made for.
         """
+        positions = check_positions(positions, "Wish.residual")
         A, y, variance = self.rows(positions.shape[-3])
         hard = variance == 0
         if not hard.any():

@@ -18,7 +18,10 @@ def real_array(
     Raises:
         ValueError: if a value is not finite or the shape is another one.
     """
-    array = np.asarray(value, dtype=np.float64)
+    raw = np.asarray(value)
+    if raw.size and raw.dtype.kind not in "biuf":
+        raise ValueError(f"{who}: {name} should be real numbers")
+    array = raw.astype(np.float64)
     if not np.isfinite(array).all():
         raise ValueError(f"{who}: {name} has a value that is not finite")
     if shape is not None:

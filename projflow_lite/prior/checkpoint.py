@@ -14,6 +14,7 @@ from safetensors.torch import save_file
 
 from projflow_lite.prior.model import Prior
 from projflow_lite.prior.text import Vocabulary
+from projflow_lite.skeleton import shown
 
 FORMAT = "projflow_lite prior 1"
 SHIPPED = "shipped.safetensors"
@@ -54,25 +55,40 @@ def load_prior(path: str | Path | None = None) -> Prior:
         with as_file(files("projflow_lite.prior") / SHIPPED) as shipped:
             return load_prior(shipped)
     tensors, metadata = read(path)
-    about = json.loads(metadata.get("prior", "{}"))
-    if about.get("format") != FORMAT:
-        raise ValueError(f"load_prior: {path} is not a projflow_lite prior")
-    prior = Prior(
-        Vocabulary(about["words"]),
-        tensors["mean"],
-        about["noise_std"],
-        tuple(about["lengths"]),
-        about["network"],
-        about["recipe"],
-    )
+    about = description(metadata, "prior", FORMAT, path, "load_prior")
     try:
+        prior = Prior(
+            Vocabulary(about["words"]),
+            tensors["mean"],
+            about["noise_std"],
+            tuple(about["lengths"]),
+            about["network"],
+            about["recipe"],
+        )
         prior.load_state_dict({name: value.float() for name, value in tensors.items()})
-    except RuntimeError as error:
-        reason = str(error).splitlines()[-1].strip()
+    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+        reason = shown(str(error).splitlines()[-1].strip())
         raise ValueError(
             f"load_prior: {path} does not fit its own description: {reason}"
         ) from error
     return prior.eval().requires_grad_(False)
+
+
+def description(
+    metadata: dict[str, Any], kind: str, wanted: str, path: str | Path, who: str
+) -> dict[str, Any]:
+    """What a file says of itself, if it is of the kind and format wanted.
+
+    Raises:
+        ValueError: if it is not; the message names the file.
+    """
+    try:
+        about = json.loads(metadata.get(kind, "{}"))
+    except ValueError:
+        about = None
+    if not isinstance(about, dict) or about.get("format") != wanted:
+        raise ValueError(f"{who}: {path} is not a projflow_lite {kind}")
+    return about
 
 
 def write(tensors: dict[str, torch.Tensor], metadata: dict[str, str], path: str | Path) -> None:
@@ -91,6 +107,8 @@ def read(path: str | Path) -> tuple[dict[str, torch.Tensor], dict[str, Any]]:
         FileNotFoundError: if there is no such file.
         ValueError: if it is damaged; the message names it.
     """
+    if not isinstance(path, str | Path):
+        raise ValueError(f"a checkpoint is named by its path, not by {shown(path)}")
     if not Path(path).is_file():
         raise FileNotFoundError(f"there is no checkpoint at {path}")
     try:

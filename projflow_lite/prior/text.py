@@ -40,16 +40,16 @@ class Vocabulary:
         """The words of a prompt that were never seen."""
         return [word for word in words_of(prompt) if word not in self.index]
 
-    def encode(self, prompts: Sequence[str | None]) -> torch.Tensor:
+    def encode(self, prompts: Sequence[str | None], reader: str = "prior") -> torch.Tensor:
         """Word numbers of several prompts, ``(prompts, longest)``, padded with 0.
 
         None stands for "no prompt" and becomes a row of zeros. Unknown words are left out, with a
-        warning that names them.
+        warning that names them and the `reader` that does not know them.
         """
         for prompt in dict.fromkeys(prompts):
             if prompt is not None and (never := self.unknown(prompt)):
                 names = ", ".join(f"'{word}'" for word in never)
-                warnings.warn(f"prompt: the prior never saw {names}; left out", stacklevel=3)
+                warnings.warn(f"prompt: the {reader} never saw {names}; left out", stacklevel=3)
         rows = [
             [self.index[word] for word in words_of(prompt or "") if word in self.index]
             for prompt in prompts

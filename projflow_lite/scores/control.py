@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from projflow_lite.skeleton import number_array
+
 MISS = 0.5
 """A keyframe missed by more than this, in metres, counts as lost."""
 
@@ -38,9 +40,14 @@ def control_errors(positions: ArrayLike, targets: ArrayLike) -> ControlErrors:
 
     Source: OmniControl's definitions, as ProjFlow reports them.
     """
-    p, wanted = np.asarray(positions, float), np.asarray(targets, float)
+    p = number_array(positions, "control_errors: positions").astype(float)
+    wanted = number_array(targets, "control_errors: targets").astype(float)
+    if p.ndim < 3 or p.shape[-1] != 3:
+        raise ValueError(f"control_errors: positions {p.shape} are not (..., frames, joints, 3)")
     if p.shape != wanted.shape:
         raise ValueError(f"control_errors: positions {p.shape} and targets {wanted.shape} differ")
+    if not np.isfinite(p).all() or np.isinf(wanted).any():
+        raise ValueError("control_errors: a position is not finite; only targets may be NaN")
     e = np.linalg.norm(p - wanted, axis=-1)
     observed = ~np.isnan(e)
     count = observed.sum(axis=(-2, -1))

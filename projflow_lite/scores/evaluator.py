@@ -15,7 +15,6 @@ from functools import cache
 from importlib.resources import as_file, files
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
@@ -23,9 +22,9 @@ from numpy.typing import NDArray
 from torch import nn
 from torch.nn import functional
 
-from projflow_lite.prior.checkpoint import read, write
+from projflow_lite.prior.checkpoint import description, read, write
 from projflow_lite.prior.text import TextEncoder, Vocabulary, words_of
-from projflow_lite.skeleton import FPS, N_JOINTS, check_positions
+from projflow_lite.skeleton import FPS, N_JOINTS, check_positions, shown
 
 FORMAT = "projflow_lite evaluator 1"
 SHIPPED = "evaluator.safetensors"
@@ -179,15 +178,13 @@ def load_evaluator(path: str | Path | None = None) -> Evaluator:
     if path is None:
         return shipped()
     tensors, metadata = read(path)
-    about: dict[str, Any] = json.loads(metadata.get("evaluator", "{}"))
-    if about.get("format") != FORMAT:
-        raise ValueError(f"load_evaluator: {path} is not a projflow_lite evaluator")
-    sizes = Sizes(**about["sizes"])
-    evaluator = Evaluator(Vocabulary(about["words"]), sizes, about["recipe"])
+    about = description(metadata, "evaluator", FORMAT, path, "load_evaluator")
     try:
+        sizes = Sizes(**about["sizes"])
+        evaluator = Evaluator(Vocabulary(about["words"]), sizes, about["recipe"])
         evaluator.load_state_dict({name: value.float() for name, value in tensors.items()})
-    except RuntimeError as error:
-        reason = str(error).splitlines()[-1].strip()
+    except (KeyError, TypeError, ValueError, RuntimeError) as error:
+        reason = shown(str(error).splitlines()[-1].strip())
         raise ValueError(f"load_evaluator: {path} does not fit its own sizes: {reason}") from error
     return evaluator.eval().requires_grad_(False)
 

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import stats
 
+from projflow_lite.skeleton import number_array
+
 
 class Interval(NamedTuple):
     """A mean, and how far its confidence interval reaches to either side."""
@@ -30,9 +32,11 @@ def interval(values: ArrayLike, confidence: float = 0.95) -> Interval:
     Raises:
         ValueError: if there is no value, more than one axis, or no such confidence.
     """
-    v = np.asarray(values, float)
+    v = number_array(values, "interval: values").astype(float)
     if v.ndim != 1 or len(v) == 0:
         raise ValueError(f"interval: one number for each repetition, not shape {v.shape}")
+    if not np.isfinite(v).all():
+        raise ValueError("interval: a measurement is not finite")
     if not 0 < confidence < 1:
         raise ValueError(f"interval: confidence is between 0 and 1, not {confidence!r}")
     if len(v) == 1:

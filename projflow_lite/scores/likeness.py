@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from projflow_lite.skeleton import FPS, check_positions, joint_indices
+from projflow_lite.scores.physics import check_long_enough
+from projflow_lite.skeleton import FPS, check_positions, joint_indices, number_array
 
 STILL_SPEED, STILL_ACCELERATION = 0.03, 0.3
 """m/s and m/s²: what a motion-capture marker on a standing foot shows. Less is not seen as less."""
@@ -26,12 +27,14 @@ def frechet_distance(a: ArrayLike, b: ArrayLike) -> float:
     Raises:
         ValueError: if the features differ in number or there are fewer than two samples.
     """
-    a, b = np.asarray(a, float), np.asarray(b, float)
+    a, b = (number_array(s, "frechet_distance: features").astype(float) for s in (a, b))
     if a.ndim != 2 or b.ndim != 2 or a.shape[1] != b.shape[1] or min(len(a), len(b)) < 2:
         raise ValueError(
             f"frechet_distance: two sets of at least two feature vectors of one length, "
             f"not {a.shape} and {b.shape}"
         )
+    if not (np.isfinite(a).all() and np.isfinite(b).all()):
+        raise ValueError("frechet_distance: a feature is not finite")
     C_a, C_b = np.atleast_2d(np.cov(a.T)), np.atleast_2d(np.cov(b.T))
     # tr (C_a C_b)^1/2 through symmetric matrices: their square roots are real even if singular.
     size, axes = np.linalg.eigh(C_a)
@@ -54,6 +57,7 @@ def kinetic_features(positions: NDArray, fps: float = FPS) -> NDArray:
         ``(..., 12)``.
     """
     ends = check_positions(positions, "kinetic_features")[..., ENDS, :]
+    check_long_enough("kinetic_features", ends, 3, fps)
     speed = np.square(np.diff(ends, axis=-3) * fps).sum(-1).mean(-2)
     acceleration = np.square(np.diff(ends, 2, axis=-3) * fps**2).sum(-1).mean(-2)
     floor = np.repeat([STILL_SPEED**2, STILL_ACCELERATION**2], len(ENDS))

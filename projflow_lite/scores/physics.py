@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from projflow_lite.skeleton import FPS, JOINTS, bone_lengths, check_positions
+from projflow_lite.skeleton import EDGES, FPS, JOINTS, bone_lengths, check_positions, shown
 
 FEET = (JOINTS.index("left_foot"), JOINTS.index("right_foot"))
 ANKLES = (JOINTS.index("left_ankle"), JOINTS.index("right_ankle"))
@@ -25,7 +25,9 @@ def bone_length_error(positions: NDArray, reference: NDArray | None = None) -> N
         ``(...)``, a share: 0.01 means that bones are off by 1 % on average.
     """
     lengths = bone_lengths(check_positions(positions, "bone_length_error"))
-    true = np.median(lengths, axis=-2) if reference is None else np.asarray(reference)
+    true = np.median(lengths, axis=-2) if reference is None else np.asarray(reference, float)
+    if true.shape[-1:] != (len(EDGES),) or not (np.isfinite(true) & (true > 0)).all():
+        raise ValueError("bone_length_error: reference is 21 lengths, all above 0")
     return (np.abs(lengths - true[..., None, :]) / true[..., None, :]).mean((-2, -1))
 
 
@@ -59,6 +61,7 @@ def foot_skating(positions: NDArray, fps: float = FPS, definition: str = "gmd") 
     x = check_positions(positions, "foot_skating")
     if x.shape[-3] < 2:
         raise ValueError("foot_skating: a motion of one frame has no speed")
+    check_long_enough("foot_skating", x, 2, fps)
     return SKATING[definition](x, fps).mean(-1)
 
 
@@ -88,11 +91,23 @@ SKATING = {"gmd": either_toe_slides, "bmm": both_heels_slide}
 
 def worst_acceleration(positions: NDArray, fps: float = FPS) -> NDArray:
     """Largest acceleration of any joint, ``(...)``, m/s²: it sees a keyframe that pops."""
-    second = np.diff(check_positions(positions, "worst_acceleration"), 2, axis=-3) * fps**2
+    x = check_positions(positions, "worst_acceleration")
+    check_long_enough("worst_acceleration", x, 3, fps)
+    second = np.diff(x, 2, axis=-3) * fps**2
     return np.linalg.norm(second, axis=-1).max((-2, -1))
 
 
 def mean_jerk(positions: NDArray, fps: float = FPS) -> NDArray:
     """Mean size of the third derivative over joints and frames, ``(...)``, m/s³."""
-    third = np.diff(check_positions(positions, "mean_jerk"), 3, axis=-3) * fps**3
+    x = check_positions(positions, "mean_jerk")
+    check_long_enough("mean_jerk", x, 4, fps)
+    third = np.diff(x, 3, axis=-3) * fps**3
     return np.linalg.norm(third, axis=-1).mean((-2, -1))
+
+
+def check_long_enough(who: str, positions: NDArray, frames: int, fps: float) -> None:
+    """Refuse a motion with too few frames for a derivative, and a frame rate that is none."""
+    if positions.shape[-3] < frames:
+        raise ValueError(f"{who}: needs at least {frames} frames, not {positions.shape[-3]}")
+    if not isinstance(fps, int | float | np.number) or not 0 < fps < np.inf:
+        raise ValueError(f"{who}: fps is a number above 0, not {shown(fps)}")
