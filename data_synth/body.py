@@ -30,6 +30,9 @@ SIDES = ("left", "right")
 LONGEST_LEG = 0.990
 """Distance from hip to ankle, as a share of thigh plus shank: no knee is ever quite straight."""
 
+ANKLE_UP, ANKLE_DOWN = np.radians(46.0), np.radians(-50.0)
+"""How far a foot may come up to its shank, and go down from it, counted from a flat foot."""
+
 TOE_HEIGHT = 0.012
 """Height of the toe joint of a foot flat on the floor, metres."""
 
@@ -154,6 +157,18 @@ def foot_joints(pose: Pose, bones: NDArray) -> tuple[NDArray, NDArray]:
     return ankle, toe
 
 
+def legs(pose: Pose, bones: NDArray) -> tuple[NDArray, NDArray, NDArray]:
+    """Knees, ankles and toes, each ``(n, frames, 2, 3)``."""
+    ankles, toes = foot_joints(pose, bones)
+    pelvis = turn(pose.yaw, pose.pitch, pose.roll)
+    sides = [[joint(f"{side}_{part}") for side in SIDES] for part in ("hip", "knee", "ankle")]
+    hips, thighs, shanks = (bones[:, numbers] for numbers in sides)
+    hips = pose.pelvis[:, :, None] + rotate(pelvis[:, :, None], hips[:, None])
+    upper, lower = (np.linalg.norm(part, axis=-1)[:, None] for part in (thighs, shanks))
+    ahead = 0.5 * (pelvis[:, :, None, :, 2] + turn(pose.foot_yaw)[..., 2])
+    return two_bones(hips, ankles, upper, lower, ahead), ankles, toes
+
+
 def assemble(pose: Pose, bones: NDArray) -> NDArray:
     """Joint positions ``(n, frames, 22, 3)`` of a pose.
 
@@ -177,17 +192,11 @@ def assemble(pose: Pose, bones: NDArray) -> NDArray:
         rotation = pelvis if name.endswith("hip") else frame_of.get(name, chest)
         j = joint(name)
         x[:, :, j] = x[:, :, PARENTS[j]] + rotate(rotation, bones[:, None, j])
-    ankles, toes = foot_joints(pose, bones)
     lengths = np.linalg.norm(bones, axis=-1)
+    knees, ankles, toes = legs(pose, bones)
     for s, side in enumerate(SIDES):
-        hip, knee, ankle, foot = (
-            joint(f"{side}_{part}") for part in ("hip", "knee", "ankle", "foot")
-        )
-        x[:, :, ankle], x[:, :, foot] = ankles[:, :, s], toes[:, :, s]
-        ahead = 0.5 * (pelvis[..., 2] + turn(pose.foot_yaw[..., s])[..., 2])
-        x[:, :, knee] = two_bones(
-            x[:, :, hip], x[:, :, ankle], lengths[:, None, knee], lengths[:, None, ankle], ahead
-        )
+        for part, places in (("knee", knees), ("ankle", ankles), ("foot", toes)):
+            x[:, :, joint(f"{side}_{part}")] = places[:, :, s]
         shoulder, elbow, wrist = (
             joint(f"{side}_{part}") for part in ("shoulder", "elbow", "wrist")
         )
@@ -245,6 +254,34 @@ def lower_into_reach(pose: Pose, bones: NDArray, level: float = 0.0) -> None:
     excess = (pose.pelvis[..., 1] - room).clip(0)
     whole = level * excess.max(axis=1, keepdims=True)
     pose.pelvis[..., 1] -= whole + smooth(widest((excess - whole).clip(0), 3), 1.6)
+
+
+def ease_ankles(pose: Pose, bones: NDArray) -> None:
+    """Lift the heel where a foot would have to bend up further than an ankle does, or lower it.
+
+    Args:
+        pose: changed in place; toes that stand stay where they are.
+        bones: ``(n, 22, 3)`` bone vectors at rest.
+    """
+    for _ in range(3):  # a lifted heel moves the knee, too
+        up = ankle_angle(pose, bones)
+        beyond = (up - ANKLE_UP).clip(0) - (ANKLE_DOWN - up).clip(0)
+        if not beyond.any():
+            return
+        for s in range(len(SIDES)):
+            for sign in (1.0, -1.0):
+                needed = widest((sign * beyond[..., s]).clip(0), 2)
+                pose.foot_pitch[..., s] += sign * smooth(needed, 1.0)
+
+
+def ankle_angle(pose: Pose, bones: NDArray) -> NDArray:
+    """How far each foot is bent up from a right angle and its own slope, ``(n, frames, 2)``."""
+    knees, ankles, toes = legs(pose, bones)
+    shank, foot = knees - ankles, toes - ankles
+    size = np.linalg.norm(shank, axis=-1) * np.linalg.norm(foot, axis=-1)
+    flat = bones[:, None, [joint(f"{side}_foot") for side in SIDES]]
+    slope = np.arctan2(-flat[..., 1], np.hypot(flat[..., 0], flat[..., 2]))
+    return np.pi / 2 + slope - np.arccos(((shank * foot).sum(-1) / size).clip(-1, 1))
 
 
 def widest(x: NDArray, radius: int) -> NDArray:

@@ -11,6 +11,7 @@ import numpy as np
 WHO = ("a person", "someone", "a man", "a woman", "the person")
 LEFT_RIGHT = {1.0: "left", -1.0: "right"}
 TIMES = {2: " twice", 3: " three times"}
+SLOWLY, QUICKLY = " slowly", " quickly"
 
 SAID: dict[str, tuple[str, ...]] = {
     "walk": (
@@ -305,7 +306,7 @@ def adverb(action: str, drawn: dict[str, float]) -> str:
         return ""
     slow, quick = PACE[action]
     pace = abs(drawn["speed"] if "speed" in drawn else drawn["rate"])
-    return " slowly" if pace < slow else " quickly" if pace > quick else ""
+    return SLOWLY if pace < slow else QUICKLY if pace > quick else ""
 
 
 def caption(action: str, drawn: dict[str, float], random: np.random.Generator) -> str:
@@ -318,3 +319,19 @@ def caption(action: str, drawn: dict[str, float], random: np.random.Generator) -
     times = TIMES.get(int(often), "") if np.isfinite(often) else ""
     sentence = said[random.integers(len(said))].format(side=side, other=other, times=times)
     return f"{who} {sentence}{adverb(action, drawn)}"
+
+
+def phrases() -> list[str]:
+    """All that captions are put together from, so that their words are known before any clip.
+
+    Clips of some length would not do: nobody hops three times in a second, and a rare word may
+    be missing by chance.
+    """
+    said = [
+        text.format(side=side, other=side, times=times)
+        for texts in SAID.values()
+        for text in texts
+        for side in LEFT_RIGHT.values()
+        for times in TIMES.values()
+    ]
+    return [*WHO, *said, SLOWLY, QUICKLY]

@@ -5,7 +5,7 @@ The same function measures synthetic and recorded clips, so that the two can sta
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -36,11 +36,12 @@ UNITS = {
 """What is measured of every clip that steps; NaN where a clip has fewer than three steps."""
 
 
-def statistics(positions: ArrayLike) -> dict[str, Any]:
+def statistics(positions: ArrayLike | Sequence[ArrayLike]) -> dict[str, Any]:
     """Measure a set of clips.
 
     Args:
-        positions: ``(n, frames, 22, 3)`` metres, y up, 20 frames a second, at least 10 frames.
+        positions: ``(n, frames, 22, 3)`` metres, y up, 20 frames a second, at least 10 frames; or
+            a list of clips ``(frames, 22, 3)`` of different lengths.
 
     Returns:
         For each name of `UNITS` a `Distribution` over clips; ``acceleration_mean``,
@@ -51,20 +52,29 @@ def statistics(positions: ArrayLike) -> dict[str, Any]:
     Raises:
         ValueError: for another shape, or values that are not finite.
     """
-    x = refuse_bad_shapes(positions)
-    gait = {name: spread(values) for name, values in gait_of(x).items()}
-    acceleration = size_of_difference(x, 2)
-    jerk = size_of_difference(x, 3)
+    clips = as_clips(positions)
+    gait = {name: spread(values) for name, values in gait_of(clips).items()}
+    acceleration, jerk = (
+        np.concatenate([size_of_difference(x[None], order).ravel() for x in clips])
+        for order in (2, 3)
+    )
     return {
-        "clips": len(x),
+        "clips": len(clips),
         **gait,
         "acceleration_mean": float(acceleration.mean()),
         "acceleration_p95": float(np.percentile(acceleration, 95)),
         "jerk_mean": float(jerk.mean()),
         "jerk_p95": float(np.percentile(jerk, 95)),
-        "spectrum": spectrum(x),
-        "bones": bones_of(x),
+        "spectrum": spectrum(clips),
+        "bones": bones_of(clips),
     }
+
+
+def as_clips(positions: ArrayLike | Sequence[ArrayLike]) -> list[NDArray]:
+    """Single clips of any lengths, each checked by `refuse_bad_shapes`."""
+    if isinstance(positions, list | tuple) and len({np.shape(clip) for clip in positions}) > 1:
+        return [refuse_bad_shapes([clip])[0] for clip in positions]
+    return list(refuse_bad_shapes(np.asarray(positions, dtype=float)))
 
 
 def refuse_bad_shapes(positions: ArrayLike) -> NDArray:
@@ -94,31 +104,37 @@ def size_of_difference(x: NDArray, order: int) -> NDArray:
     return np.linalg.norm(np.diff(x, order, axis=1), axis=-1) * FPS**order
 
 
-def spectrum(x: NDArray) -> dict[str, float]:
+def spectrum(clips: Sequence[NDArray]) -> dict[str, float]:
     """Share of the root-relative movement (the mean pose taken off) in each band of `BANDS`."""
-    relative = x - x[:, :, :1]
-    relative = relative - relative.mean(axis=1, keepdims=True)
-    power = (np.abs(np.fft.rfft(relative, axis=1)) ** 2).sum(axis=(0, 2, 3))
-    frequency = np.fft.rfftfreq(x.shape[1], 1 / FPS)
-    total = max(float(power[1:].sum()), 1e-30)
-    shares = {}
-    for low, high in BANDS:
-        inside = (frequency >= low) & (frequency < high) & (frequency > 0)
-        shares[f"{low:g}-{high:g} Hz"] = float(power[inside].sum()) / total
-    return shares
+    names = [f"{low:g}-{high:g} Hz" for low, high in BANDS]
+    shares = np.zeros(len(BANDS))
+    for clip in clips:
+        frequency, power = power_of(clip)
+        band = np.digitize(frequency[1:], [low for low, _ in BANDS]) - 1
+        np.add.at(shares, band, power[1:])
+    return dict(zip(names, (shares / max(shares.sum(), 1e-30)).tolist(), strict=True))
 
 
-def bones_of(x: NDArray) -> dict[str, float]:
+def power_of(clip: NDArray) -> tuple[NDArray, NDArray]:
+    """Frequencies, Hz, and how much root-relative movement of one clip there is in each."""
+    relative = clip - clip[:, :1]
+    relative = relative - relative.mean(axis=0)
+    power = (np.abs(np.fft.rfft(relative, axis=0)) ** 2).sum(axis=(1, 2)) / len(clip)
+    return np.fft.rfftfreq(len(clip), 1 / FPS), power
+
+
+def bones_of(clips: Sequence[NDArray]) -> dict[str, float]:
     """Median length of every bone, metres, by the name of the joint it ends in."""
+    x = np.concatenate(clips)
     return {
-        JOINTS[child]: float(np.median(np.linalg.norm(x[:, :, child] - x[:, :, parent], axis=-1)))
+        JOINTS[child]: float(np.median(np.linalg.norm(x[:, child] - x[:, parent], axis=-1)))
         for parent, child in EDGES
     }
 
 
-def gait_of(x: NDArray) -> dict[str, NDArray]:
+def gait_of(clips: Sequence[NDArray] | NDArray) -> dict[str, NDArray]:
     """The measures of `UNITS`, ``(n,)`` each."""
-    rows = [gait_of_one(clip) for clip in x]
+    rows = [gait_of_one(clip) for clip in clips]
     return {name: np.array([row[name] for row in rows]) for name in UNITS}
 
 

@@ -16,10 +16,8 @@ from data_synth.captions import caption
 
 ACTIONS: tuple[str, ...] = tuple(MAKERS)
 SHORTEST, LONGEST = 20, 196
-HELD_OUT = 2**64
-"""Seeds of the held-out clips begin here, above all that training can ask for."""
-BLOCK = 10 * len(ACTIONS)
-"""Held-out clips are made this many at a time, so that a small set is the start of a larger one."""
+ROUNDS = 10
+"""Held-out clips are made ten of each action at a time: a small set begins every larger one."""
 
 
 class Clips(NamedTuple):
@@ -54,7 +52,8 @@ def make_clips(
         ValueError: for an unknown action, a length or a seed out of range, or fewer than one clip.
     """
     names = check(n, frames, actions)
-    return drawn_with(np.random.default_rng(check_seed("make_clips", seed)), n, frames, names)
+    random = np.random.default_rng(check_seed("make_clips", seed))
+    return drawn_with(random, shuffled(random, n, names), frames, names)
 
 
 def stream(
@@ -78,29 +77,33 @@ def stream(
     """
     names = check(batch, frames, actions)
     seed = check_seed("stream", seed)
-    return (
-        drawn_with(np.random.default_rng([seed, number]), batch, frames, names)
-        for number in count(first)
-    )
+    generators = (np.random.default_rng([seed, number]) for number in count(first))
+    return (drawn_with(r, shuffled(r, batch, names), frames, names) for r in generators)
 
 
-def held_out(n: int, frames: int = 60) -> Clips:
+def held_out(
+    n: int, frames: int = 60, seed: int = 0, actions: Sequence[str] | None = None
+) -> Clips:
     """The clips to evaluate on: always the same, and out of reach of every training seed.
 
+    A generator of `make_clips` or `stream` starts from one or two numbers. These start from a
+    spawned sequence, which no numbers, however large, lead to.
+
     Args:
-        n: how many; fewer clips are the first of more.
+        n: how many; fewer clips are the first of more. Each action comes equally often, give or
+            take one.
         frames: length of each, 20 to 196.
+        seed: from 0 to 2^63 - 1; another seed gives other clips, none of them for training either.
+        actions: names of `ACTIONS`; by default all.
 
     Raises:
-        ValueError: for a length out of range, or fewer than one clip.
+        ValueError: as `make_clips` does.
     """
-    names = check(n, frames, None)
-    blocks = [
-        drawn_with(np.random.default_rng(HELD_OUT + k), BLOCK, frames, names)
-        for k in range(-(-n // BLOCK))
-    ]
+    names = check(n, frames, actions)
+    seed = check_seed("held_out", seed)
+    blocks = [held_out_block(seed, k, frames, names) for k in range(-(-n // (ROUNDS * len(names))))]
     keys = dict.fromkeys(key for block in blocks for key in block.parameters)
-    missing = np.full(BLOCK, np.nan)
+    missing = np.full(ROUNDS * len(names), np.nan)
     return Clips(
         np.concatenate([block.positions for block in blocks])[:n],
         [caption for block in blocks for caption in block.captions][:n],
@@ -112,9 +115,24 @@ def held_out(n: int, frames: int = 60) -> Clips:
     )
 
 
-def drawn_with(random: np.random.Generator, n: int, frames: int, names: list[str]) -> Clips:
-    """Make clips of the named actions with the numbers of one generator."""
-    order = random.permutation(np.arange(n) % len(names))
+def held_out_block(seed: int, number: int, frames: int, names: list[str]) -> Clips:
+    """Some rounds of held-out clips; each round has every action once."""
+    # The length is part of the key: one seed would draw the same captions for every length.
+    random = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(frames, number)))
+    order = np.concatenate([random.permutation(len(names)) for _ in range(ROUNDS)])
+    return drawn_with(random, order, frames, names)
+
+
+def shuffled(random: np.random.Generator, n: int, names: list[str]) -> NDArray[np.int64]:
+    """Numbers of `n` actions, each equally often, in random order."""
+    return random.permutation(np.arange(n) % len(names))
+
+
+def drawn_with(
+    random: np.random.Generator, order: NDArray[np.int64], frames: int, names: list[str]
+) -> Clips:
+    """Make clips with the numbers of one generator; `order` ``(n,)`` says which action each is."""
+    n = len(order)
     positions = np.zeros((n, frames, 22, 3), dtype=np.float32)
     captions, done = [""] * n, [names[k] for k in order]
     parameters: dict[str, NDArray] = {}

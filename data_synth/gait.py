@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from data_synth.body import TOE_HEIGHT, Pose, lower_into_reach, standing_height
+from data_synth.body import TOE_HEIGHT, Pose, ease_ankles, lower_into_reach, standing_height
 from data_synth.curves import ease
 from projflow_lite.skeleton import FPS
 
@@ -228,6 +228,7 @@ def walk_over(gait: Gait, path: Path, bones: NDArray) -> Pose:
         hand=swinging_hands(gait, angle, effort, bones),
     )
     lower_into_reach(pose, bones, level=0.85)
+    ease_ankles(pose, bones)
     return pose
 
 

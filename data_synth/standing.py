@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from data_synth.body import TOE_HEIGHT, Pose, lower_into_reach, standing_height
+from data_synth.body import TOE_HEIGHT, Pose, ease_ankles, lower_into_reach, standing_height
 from data_synth.curves import uniform, wander
 from data_synth.gait import hang
 
@@ -69,8 +69,9 @@ def feet(random: np.random.Generator, n: int, frames: int) -> tuple[NDArray, NDA
 
 
 def settle(pose: Pose, bones: NDArray) -> Pose:
-    """Lower the pelvis where the legs would not reach; return the pose."""
+    """Lower the pelvis where the legs would not reach, spare the ankles; return the pose."""
     lower_into_reach(pose, bones)
+    ease_ankles(pose, bones)
     return pose
 
 

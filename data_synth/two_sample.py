@@ -6,6 +6,7 @@ all it says: what it is not shown may still differ.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
 
 from data_synth.body import joint
-from data_synth.card import body_axes, gait_of, refuse_bad_shapes, size_of_difference
+from data_synth.card import UNITS, body_axes, gait_of, refuse_bad_shapes, size_of_difference
 
 FOLDS = 5
 GROUPS = {
@@ -35,7 +36,19 @@ ANGLES = {
 """Three joints of each side whose middle one bends."""
 
 
-def two_sample_test(a: ArrayLike, b: ArrayLike, seed: int = 0) -> dict[str, Any]:
+KINDS = {
+    "gait": tuple(name.replace("_", " ") for name in UNITS),
+    "joint angles": ("bend of", "lean of"),
+    "speeds": ("speed of",),
+    "accelerations": ("acceleration of",),
+    "jerks": ("jerk of",),
+}
+"""What the names of the features of each kind begin with."""
+
+
+def two_sample_test(
+    a: ArrayLike, b: ArrayLike, seed: int = 0, kinds: Sequence[str] = tuple(KINDS)
+) -> dict[str, Any]:
     """Train a classifier to tell two sets of clips apart, and test it on clips it has not seen.
 
     Windows cut from one recording are alike: several of them in one set make it easier to tell.
@@ -44,6 +57,7 @@ def two_sample_test(a: ArrayLike, b: ArrayLike, seed: int = 0) -> dict[str, Any]
         a: ``(n, frames, 22, 3)`` metres, at least 10 clips.
         b: ``(m, frames, 22, 3)``, the same number of frames.
         seed: decides which clips are tested together.
+        kinds: names of `KINDS`: what the classifier is shown; by default everything.
 
     Returns:
         ``accuracy``, the mean over both sets of the share of clips that were told rightly when
@@ -63,7 +77,9 @@ def two_sample_test(a: ArrayLike, b: ArrayLike, seed: int = 0) -> dict[str, Any]
     if min(len(first), len(second)) < 2 * FOLDS:
         raise ValueError(f"two_sample_test: needs at least {2 * FOLDS} clips of each set")
     one, other = features_of(first), features_of(second)
-    names = list(one)
+    names = [name for name in one if kind_of(name) in kinds]
+    if not names:
+        raise ValueError(f"two_sample_test: kinds are {', '.join(KINDS)}, not {kinds!r}")
     x = np.concatenate([np.stack([s[k] for k in names], axis=1) for s in (one, other)])
     y = np.repeat([0.0, 1.0], [len(first), len(second)])
     told = cross_validated(x, y, np.random.default_rng(seed))
@@ -77,6 +93,12 @@ def two_sample_test(a: ArrayLike, b: ArrayLike, seed: int = 0) -> dict[str, Any]
         "interval": interval,
         "features": [(name, float(difference)) for name, difference in ranking],
     }
+
+
+def kind_of(name: str) -> str:
+    """The kind of a feature."""
+    # The last kind is asked first: "speed" is gait, and "speed of wrists" is not.
+    return next(kind for kind in reversed(KINDS) if name.startswith(KINDS[kind]))
 
 
 def features_of(x: NDArray) -> dict[str, NDArray]:

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from torch.nn import functional
 from tqdm.auto import tqdm
 
-from data_synth import Clips, make_clips
+from data_synth import held_out, make_clips
 from projflow_lite.prior.text import Vocabulary
 from projflow_lite.scores.evaluator import (
     SHIPPED,
@@ -36,9 +36,6 @@ from projflow_lite.scores.evaluator import (
     save_evaluator,
 )
 from projflow_lite.scores.retrieval import matching_score, r_precision
-
-HELD_OUT_SEED = 2**62
-"""Held-out clips come from seeds above this, training clips from far smaller ones."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +57,6 @@ class Recipe:
     learning_rate: float = 1e-3
     lengths: tuple[int, ...] = (24, 40, 50, 60, 80, 100, 120)
     seed: int = 0
-
-
-def held_out(n: int, frames: int = 60, seed: int = 0) -> Clips:
-    """Clips that neither evaluator nor prior was trained on, other ones for every seed."""
-    return make_clips(n, frames, seed=HELD_OUT_SEED + seed)
 
 
 def batches(recipe: Recipe) -> Iterator[tuple[torch.Tensor, list[str]]]:
@@ -151,7 +143,7 @@ def train(
     with tqdm(range(recipe.steps), disable=not progress, unit="step") as bar:
         for _ in bar:
             positions, captions = next(data)
-            text = evaluator.text(evaluator.vocabulary.encode(captions))
+            text = evaluator.text(evaluator.vocabulary.encode(captions, "evaluator"))
             loss = contrastive_loss(evaluator.motion(positions), text, captions)
             if not torch.isfinite(loss):
                 raise ValueError(f"train: the loss is {loss.item()}; learn slower")

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from data_synth import held_out
 from projflow_lite.samplers import sample
 from projflow_lite.samplers.projflow import Velocity
-from projflow_lite.scores.evaluator_training import held_out
 from projflow_lite.skeleton import EDGES, JOINTS, N_JOINTS
 
 PAGE, KEY = "blind.html", "blind_key.json"

@@ -7,13 +7,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from data_synth import ACTIONS, make_clips
+from data_synth import ACTIONS, held_out
 from projflow_lite.constraints import Wish, pin
 from projflow_lite.exchange.pictures import contact_sheet, film
 from projflow_lite.motion import Motion
 from projflow_lite.prior import Prior
 from projflow_lite.samplers import sample
-from projflow_lite.studies.noise_reading import HELD_OUT_SEED
 
 SHOWN = (
     "walk", "run", "sneak", "walk_turn", "jump", "hop", "sit", "lunge", "kick", "throw", "wave",
@@ -50,7 +49,7 @@ def run(prior: Prior, folder: Path, frames: int = 60, seed: int = 0) -> list[Pat
     folder.mkdir(parents=True, exist_ok=True)
     prompts, data = [], []
     for number, action in enumerate(ACTIONS):
-        clip = make_clips(1, frames, seed=HELD_OUT_SEED + number, actions=[action])
+        clip = held_out(1, frames, number, [action])
         prompts.append(clip.captions[0])
         data.append(Motion(clip.positions[0], clip.captions[0]))
     batch = sample(prior, prompt=prompts, frames=frames, batch=len(prompts), seed=seed)

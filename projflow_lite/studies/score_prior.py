@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
+from data_synth import held_out
 from projflow_lite.samplers import sample
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import interval, load_evaluator, multimodality, score_clips
-from projflow_lite.scores.evaluator_training import held_out
 
 BATCH = 64
 QUICK: dict[str, Any] = {"clips": 3 * BATCH, "repetitions": 3, "steps": (25,)}
@@ -133,12 +133,15 @@ def lengths_of(prior: Velocity) -> list[int]:
 
 def data_sample(lengths: list[int], clips: int, seed: int) -> Sample:
     """Held-out clips: batches of 64 of one length, the lengths in turn."""
-    parts = [
-        held_out(BATCH, lengths[k % len(lengths)], seed=1000 * seed + k)
-        for k in range(clips // BATCH)
-    ]
-    positions = [clip for part in parts for clip in part.positions]
-    return Sample(positions, [text for part in parts for text in part.captions])
+    turns = [lengths[k % len(lengths)] for k in range(clips // BATCH)]
+    made = {frames: held_out(BATCH * turns.count(frames), frames, seed) for frames in set(turns)}
+    positions: list[NDArray] = []
+    captions: list[str] = []
+    for k, frames in enumerate(turns):
+        first = BATCH * turns[:k].count(frames)
+        positions.extend(made[frames].positions[first : first + BATCH])
+        captions.extend(made[frames].captions[first : first + BATCH])
+    return Sample(positions, captions)
 
 
 def repeated(frames: int, prompts: int, seed: int, pool: int | None = None) -> Sample:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from data_synth import ACTIONS, held_out, make_clips, stream
+from data_synth import ACTIONS, dataset, held_out, make_clips, stream
 from data_synth.captions import PACE, SAID, WHO
 from projflow_lite.skeleton import JOINTS
 
@@ -159,9 +159,46 @@ def test_held_out_clips_are_fixed_and_no_training_clip_is_among_them():
     for clips in (
         make_clips(340, 30, seed=0),
         make_clips(340, 30, seed=2**31),
+        make_clips(340, 30, seed=2**62),
         next(stream(340, 30)),
+        held_out(340, 30, seed=1),
     ):
         assert not held & {clip.tobytes() for clip in clips.positions}
+
+
+@pytest.mark.parametrize("seed", [0, 5, 2**31, 2**63 - 1])
+def test_no_training_seed_draws_the_numbers_of_held_out_clips(seed, monkeypatch):
+    """Whatever is asked for, the generators start in different states."""
+    started = []
+
+    def record(random, order, frames, names):
+        started.append(random.bit_generator.state["state"]["state"])
+        return original(random, order[:1], frames, names)
+
+    original = dataset.drawn_with
+    monkeypatch.setattr(dataset, "drawn_with", record)
+    frames = 30
+    for other in (0, seed, seed + 1 if seed < 2**63 - 1 else 1):
+        held_out(3 * 10 * 2, frames, other, ["idle", "walk"])
+    held = {*started}
+    started.clear()
+    for number in (seed, seed + frames, frames, 2**32 + frames):
+        make_clips(1, frames, min(number, 2**63 - 1), ["idle"])
+        for first in (0, 1, 2, frames, frames + 2**32, 2**32):
+            next(stream(1, frames, min(number, 2**63 - 1), ["idle"], first=first))
+    assert not held & {*started}
+
+
+def test_held_out_actions_come_equally_often_in_every_set():
+    for n in (34, 64, 200, 400):
+        counts = np.array([held_out(n, 20).actions.count(name) for name in ACTIONS])
+        assert np.ptp(counts) <= 1
+    assert set(held_out(25, 20, actions=["squat", "bow"]).actions) == {"squat", "bow"}
+
+
+def test_held_out_clips_of_another_length_have_other_captions():
+    assert held_out(60, 40).captions != held_out(60, 60).captions
+    assert held_out(60, 40).captions != held_out(60, 40, seed=1).captions
 
 
 def test_a_caption_names_the_way():
@@ -214,11 +251,12 @@ WRONG = [
         f"make_clips: seed is a whole number from 0 to 2^63 - 1, not {2**64}",
     ),
     (lambda: make_clips(3, frames=197), "make_clips: frames is 20 to 196, not 197"),
+    (lambda: held_out(3, seed=-1), "held_out: seed is a whole number from 0 to 2^63 - 1, not -1"),
 ]
 
 
 @pytest.mark.parametrize(("make", "message"), WRONG, ids=[m for _, m in WRONG])
 def test_wrong_arguments_are_refused(make, message):
-    with pytest.raises(ValueError, match="make_clips") as caught:
+    with pytest.raises(ValueError, match="make_clips|held_out") as caught:
         make()
     assert str(caught.value) == message

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from data_synth import held_out
 from projflow_lite import scores
 from projflow_lite.motion import Motion
-from projflow_lite.scores.evaluator_training import held_out
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import torch
 
+from data_synth import held_out
 from projflow_lite.prior.training import RECIPES, train
 from projflow_lite.studies import score_prior
 from projflow_lite.studies.score_prior import BARS, COLUMNS, SAMPLES
@@ -19,14 +20,16 @@ class Copyist:
 
     def __init__(self, spoil=0.0):
         self.spoil = spoil
-        self.known = score_prior.held_out(2048, 40, seed=77_777)
+        self.known = held_out(2048, 40, seed=77_777)
         self.places = {}
         for k, text in enumerate(self.known.captions):
             self.places.setdefault(text, []).append(k)
 
     def __call__(self, x_t, t, text=None):
         random = np.random.default_rng(int(1e6 * abs(float(x_t[0, 0, 0, 0]))) % 2**32)
-        chosen = [random.choice(self.places.get(caption, [0])) for caption in text]
+        # A caption that it never met gets any clip it knows.
+        anything = range(len(self.known.captions))
+        chosen = [random.choice(self.places.get(caption, anything)) for caption in text]
         x1 = self.known.positions[chosen]
         x1 = x1 + self.spoil * random.normal(size=x1.shape)
         return (torch.as_tensor(x1, dtype=x_t.dtype) - x_t) / (1 - t)

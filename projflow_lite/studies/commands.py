@@ -1,0 +1,66 @@
+"""Every study behind one door: ``projflow-lite reproduce NAME``.
+
+A study prints its table and returns its numbers; pictures go to ``pictures/`` in the given folder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from projflow_lite.prior import load_prior
+from projflow_lite.studies import contact_sheet, data_card, fewer_steps, noise_reading, posterior
+
+
+class Wanted(NamedTuple):
+    """What was asked for: a checkpoint (None: the shipped one), where to, real clips, how long."""
+
+    prior: Path | None
+    out: Path
+    real: Path | None
+    quick: bool
+
+
+def run_posterior(wanted: Wanted) -> dict[str, Any]:
+    """Does projection sampling draw from p(x | y)?"""
+    rows = posterior.run(wanted.quick)
+    print(posterior.table(rows))
+    picture = posterior.figure(rows, wanted.out / "pictures" / "posterior.png")
+    return {"picture": str(picture), "rows": rows}
+
+
+def run_contact_sheet(wanted: Wanted) -> dict[str, Any]:
+    """The pictures of the README: what the prior makes, and what it learned from."""
+    paths = contact_sheet.run(load_prior(wanted.prior), wanted.out / "pictures")
+    return {"written": [str(path) for path in paths]}
+
+
+def run_noise_reading(wanted: Wanted) -> dict[str, Any]:
+    """Which noise should eq. 9 mix, and how much of it should be fresh?"""
+    clips, seeds = (24, 2) if wanted.quick else (64, 3)
+    rows = noise_reading.run(load_prior(wanted.prior), clips, seeds)
+    print(noise_reading.table(rows))
+    return {"rows": rows}
+
+
+def run_fewer_steps(wanted: Wanted) -> dict[str, Any]:
+    """How few steps keep the quality of a hundred?"""
+    rows = fewer_steps.run(load_prior(wanted.prior), wanted.quick)
+    print(fewer_steps.table(rows))
+    picture = fewer_steps.figure(rows, wanted.out / "pictures" / "fewer-steps.png")
+    return {"picture": str(picture), "rows": rows}
+
+
+def run_data_card(wanted: Wanted) -> dict[str, Any]:
+    """What the synthetic motion is like, beside recorded motion if its file is given."""
+    return data_card.run(wanted.out, wanted.real, wanted.quick)
+
+
+STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
+    "contact-sheet": run_contact_sheet,
+    "data-card": run_data_card,
+    "fewer-steps": run_fewer_steps,
+    "noise-reading": run_noise_reading,
+    "posterior": run_posterior,
+}
