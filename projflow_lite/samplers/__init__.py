@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import torch
@@ -12,28 +12,81 @@ from numpy.typing import ArrayLike
 
 from projflow_lite.constraints import Wish
 from projflow_lite.motion import Motion
+from projflow_lite.prior.model import as_prompts
 from projflow_lite.samplers.adapter import Adapter
+from projflow_lite.samplers.diffusion import ancestral
 from projflow_lite.samplers.euler import euler
-from projflow_lite.samplers.guidance import guided
+from projflow_lite.samplers.gmd import Metres, draw_noise, gmd
+from projflow_lite.samplers.gmd_imputation import Imputation, known_coordinates
+from projflow_lite.samplers.gmd_keyframes import gmd_keyframes
+from projflow_lite.samplers.gmd_obstacles import Avoid, box, circles, union
+from projflow_lite.samplers.goals import Goal, Together, check_pins, keep_speed, on_ground, reach
+from projflow_lite.samplers.guidance import checked, guided
 from projflow_lite.samplers.guides import Guides, GuideSettings
 from projflow_lite.samplers.projflow import Step, Velocity, projflow
 from projflow_lite.samplers.step import ProjectionStep
-from projflow_lite.skeleton import N_JOINTS
+from projflow_lite.skeleton import N_JOINTS, number_array, shown
 
 __all__ = [
     "METHODS",
     "Adapter",
+    "Avoid",
     "GuideSettings",
     "Guides",
+    "Imputation",
     "ProjectionStep",
     "Step",
+    "Together",
+    "ancestral",
+    "box",
+    "circles",
     "euler",
+    "gmd",
+    "gmd_keyframes",
     "guided",
+    "keep_speed",
+    "on_ground",
     "projflow",
+    "reach",
     "sample",
+    "union",
 ]
 
-METHODS = {"projflow": projflow}
+
+def pins_to_impute(
+    wish: Wish | None,
+    frames: int,
+    metric: str | ArrayLike,
+    dtype: torch.dtype,
+    guides: bool | GuideSettings,
+) -> Imputation:
+    """What GMD asks in every step: known coordinates, without a metric and without guides."""
+    if not isinstance(metric, str) or metric != "kinematic" or isinstance(guides, GuideSettings):
+        raise ValueError("sample: gmd overwrites, it has no metric and no guides; leave them out")
+    return known_coordinates(wish, frames, dtype)
+
+
+class Method(NamedTuple):
+    """A way to obey.
+
+    Attributes:
+        sampler: the loop: ``sampler(velocity, aim, x0, times, generator, text, **options)``.
+        aim: makes of a wish what the loop asks in every step: ``aim(wish, frames, metric, dtype,
+            guides)``.
+        takes_goals: whether the loop takes `goal`, with or without a wish, and `space`, for priors
+            that are not on motions in metres.
+    """
+
+    sampler: Callable[..., torch.Tensor]
+    aim: Callable[..., Any]
+    takes_goals: bool
+
+
+METHODS = {
+    "projflow": Method(projflow, ProjectionStep, takes_goals=False),
+    "gmd": Method(gmd, pins_to_impute, takes_goals=True),
+    "gmd_keyframes": Method(gmd_keyframes, pins_to_impute, takes_goals=True),
+}
 """Methods that obey a wish, by the name that `sample` takes."""
 
 
@@ -46,6 +99,7 @@ def sample(
     seed: int = 0,
     method: str = "projflow",
     *,
+    goal: Goal | None = None,
     batch: int | None = None,
     guidance: float = 1.0,
     guides: bool | GuideSettings = True,
@@ -53,55 +107,66 @@ def sample(
     dtype: torch.dtype = torch.float32,
     **options: Any,
 ) -> Motion:
-    """Generate a motion that obeys a wish exactly.
+    """Generate a motion that obeys a wish: exactly, if the method is "projflow".
 
     Args:
         prior: a `Prior`, or any callable ``velocity(x_t, t, text)`` on
             ``(batch, frames, 22, 3)``; its noise has the standard deviation
             ``prior.noise_std`` metres, or 1 if it has no such attribute. For a model that lives in
-            another layout or normalisation see `Adapter`.
+            another layout or normalisation see `Adapter`. A prior on projected motion brings
+            ``project`` and ``unproject``, see `projflow_lite.samplers.gmd.Space`.
         wish: what must hold; None for an unconstrained sample.
         prompt: what the motion should be; one text, or one for each motion of the batch.
         frames: length of the motion, at 20 frames a second.
         steps: how many sampling steps, see `flow_times`; or their flow times, from 0 to 1.
         seed: the same seed gives the same motion.
-        method: a name of `METHODS`.
+        method: a name of `METHODS`: "projflow"; or "gmd" and "gmd_keyframes", which overwrite
+            exact pins, and push.
+        goal: what else to reach, as a function of motions, see `goals`; with or without a wish.
+            For the methods of GMD.
         batch: how many motions; None for one, without a batch dimension.
         guidance: how strongly the prompt is followed, see `guided`. The shipped prior follows at 1;
             more exaggerates, and costs a second call of the network in every step.
         guides: whether sparse keyframes are helped by soft rows around them, see `Guides`; or the
-            constants to do it with.
-        metric: of the projection, see `Projector`.
+            constants to do it with. For projflow.
+        metric: of the projection, see `Projector`. For projflow.
         dtype: of the sampler's arithmetic: torch.float32 or torch.float64.
         options: further arguments of the method, see its file in ``samplers/``.
 
     Raises:
         ValueError: for a wish that does not fit the motion or contradicts itself, an unknown
-            method, or numbers that make no sense.
+            method, a goal that cannot be used, or numbers that make no sense.
     """
     check_numbers(frames, steps, guidance, batch, seed)
-    if wish is None and options:
+    if wish is None and goal is None and options:
         raise ValueError(
             f"sample: without a wish there is no {', '.join(options)}; leave it out, or add a wish"
         )
     check_choices(prior, wish, method, dtype, guides)
+    as_prompts(prompt, batch or 1)
+    check_method(prior, wish, goal, method)
     if hasattr(prior, "check_frames"):
         prior.check_frames(frames)
     times = flow_times(steps)
-    project = None if wish is None else ProjectionStep(wish, frames, metric, dtype, guides)
+    sampler, make_aim, takes_goals = METHODS[method]
+    space: Any = prior if hasattr(prior, "unproject") else Metres()
+    aim: Any = None
+    if wish is not None or takes_goals:
+        aim = make_aim(wish, frames, metric, dtype, guides)
+    if takes_goals:
+        check_pins(goal, aim.mask, aim.values)
+        options |= {"goal": goal, "space": space}
     generator = torch.Generator().manual_seed(seed)
     noise_std = torch.as_tensor(getattr(prior, "noise_std", 1.0), dtype=dtype)
-    shape = (batch or 1, frames, N_JOINTS, 3)
-    x0 = noise_std * torch.randn(shape, generator=generator, dtype=dtype)
-    velocity = guided(prior, guidance)
-    with torch.inference_mode():
-        if project is None:
-            x1 = euler(velocity, x0, times, prompt)
+    x0 = draw_noise(space, noise_std, (batch or 1, frames, N_JOINTS, 3), dtype, generator)
+    velocity = checked(guided(prior, guidance))
+    with torch.no_grad():  # and not inference mode: a goal's gradient goes through these tensors
+        if aim is None:
+            x1 = space.unproject(euler(velocity, x0, times, prompt))
         else:
-            x1 = METHODS[method](
-                velocity, project, x0, times, generator, prompt,
-                noise_std=noise_std, **options,
-            )  # fmt: skip
+            x1 = sampler(
+                velocity, aim, x0, times, generator, prompt, noise_std=noise_std, **options
+            )
     positions = x1.numpy() if batch is not None else x1[0].numpy()
     texts = prompt if prompt is None or isinstance(prompt, str) else list(prompt)
     return Motion(positions, texts, wish)  # type: ignore[arg-type]
@@ -117,10 +182,12 @@ def flow_times(steps: int | Sequence[float]) -> list[float]:
     Raises:
         ValueError: if times do not rise from 0 to 1.
     """
-    if isinstance(steps, int):
-        even = torch.linspace(0, 1, steps + 1, dtype=torch.float64)
+    whole = isinstance(steps, int | np.integer) and not isinstance(steps, bool)
+    if whole and int(steps) >= 1:  # type: ignore[arg-type]
+        even = torch.linspace(0, 1, int(steps) + 1, dtype=torch.float64)  # type: ignore[arg-type]
         return (1 - (1 - even).square()).tolist()
-    times = [float(t) for t in steps]
+    given = number_array(steps, "sample: steps") if np.ndim(steps) == 1 else np.zeros(0)
+    times = given.astype(float).tolist()
     rising = all(a < b for a, b in itertools.pairwise(times))
     if len(times) < 2 or times[0] != 0 or times[-1] != 1 or not rising:
         raise ValueError("sample: steps is a whole number, or flow times that rise from 0 to 1")
@@ -133,14 +200,31 @@ def check_numbers(
     """Refuse a count below 1, or a guidance or seed that is not a number."""
     for name, value in (("frames", frames), ("steps", steps), ("batch", batch)):
         given_times = name == "steps" and isinstance(value, Sequence | np.ndarray | torch.Tensor)
-        if value is None or (given_times and not isinstance(value, str)):
+        if (value is None and name == "batch") or (given_times and not isinstance(value, str)):
             continue
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise ValueError(f"sample: {name} is a whole number of at least 1, not {value!r}")
-    if not isinstance(guidance, int | float) or not -100 < guidance < 100:
-        raise ValueError(f"sample: guidance is a number, usually 0 to 5, not {guidance!r}")
-    if not isinstance(seed, int):
-        raise ValueError(f"sample: seed is a whole number, not {seed!r}")
+            raise ValueError(f"sample: {name} is a whole number of at least 1, not {shown(value)}")
+    number = isinstance(guidance, int | float) and not isinstance(guidance, bool)
+    if not number or not -100 < guidance < 100:
+        raise ValueError(f"sample: guidance is a number, usually 0 to 5, not {shown(guidance)}")
+    if isinstance(seed, bool) or not isinstance(seed, int) or not -(2**63) <= seed < 2**63:
+        raise ValueError(f"sample: seed is a whole number, not {shown(seed)}")
+
+
+def check_method(prior: Velocity, wish: Wish | None, goal: Goal | None, method: str) -> None:
+    """Refuse a goal that is no function, and what the method has no use for."""
+    able = ", ".join(name for name in METHODS if METHODS[name].takes_goals)
+    if goal is not None and not callable(goal):
+        raise ValueError(f"sample: goal is a function of motions, not a {type(goal).__name__}")
+    if METHODS[method].takes_goals:
+        return
+    if goal is not None:
+        raise ValueError(f"sample: {method} takes wishes and no goal; for goals take {able}")
+    if wish is not None and hasattr(prior, "unproject"):
+        raise ValueError(
+            f"sample: {method} needs a prior on motions in metres, and this one is on projected "
+            f"motion; take {able}"
+        )
 
 
 def check_choices(
@@ -157,8 +241,8 @@ def check_choices(
         raise ValueError(
             f"sample: wish is made by pin and its neighbours, not a {type(wish).__name__}"
         )
-    if method not in METHODS:
-        raise ValueError(f"sample: method is one of {', '.join(METHODS)}, not '{method}'")
+    if not isinstance(method, str) or method not in METHODS:
+        raise ValueError(f"sample: method is one of {', '.join(METHODS)}, not {shown(method)}")
     if dtype not in (torch.float32, torch.float64):
         raise ValueError(f"sample: dtype is torch.float32 or torch.float64, not {dtype}")
     if not isinstance(guides, bool | GuideSettings):

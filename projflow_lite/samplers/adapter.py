@@ -9,11 +9,14 @@ the projection needs no change at all: rows, metric and residual stay in the wor
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from typing import Any
 
 import torch
 from numpy.typing import ArrayLike
+
+from projflow_lite.skeleton import N_JOINTS, number_array, shown
 
 HERE = ("batch", "frames", "joints", "axes")
 
@@ -48,8 +51,14 @@ class Adapter:
         self.velocity, self.noise_at_one = velocity, noise_at_one
         self.groups = read_layout(layout)
         self.order = [HERE.index(name) for group in self.groups for name in group]
-        self.mean = torch.as_tensor(mean)
-        self.noise_std = torch.as_tensor(std)
+        if not isinstance(noise_at_one, bool):
+            raise ValueError(f"Adapter: noise_at_one is True or False, not {shown(noise_at_one)}")
+        self.mean = torch.as_tensor(number_array(mean, "Adapter: mean"))
+        self.noise_std = torch.as_tensor(number_array(std, "Adapter: std"))
+        for name, value in (("mean", self.mean), ("std", self.noise_std)):
+            joints, axes = (1, 1, *value.shape)[-2:]
+            if joints not in (1, N_JOINTS) or axes not in (1, 3):
+                raise ValueError(f"Adapter: {name} has shape {tuple(value.shape)}, not (22, 3)")
         if not (torch.isfinite(self.noise_std).all() and (self.noise_std > 0).all()):
             raise ValueError("Adapter: std is above 0 everywhere")
         if not torch.isfinite(self.mean).all():
@@ -57,12 +66,15 @@ class Adapter:
 
     def __call__(self, x_t: torch.Tensor, t: float, text: Any = None) -> torch.Tensor:
         """Velocity in metres at ``(batch, frames, 22, 3)``, same shape."""
+        if not callable(self.velocity):
+            raise ValueError(f"Adapter: velocity is a function, not {shown(self.velocity)}")
         mean, std = self.mean.to(x_t), self.noise_std.to(x_t)
         u_t = self.to_model((x_t - t * mean) / std)
         v = -self.velocity(u_t, 1 - t, text) if self.noise_at_one else self.velocity(u_t, t, text)
-        if v.shape != u_t.shape:
+        if not isinstance(v, torch.Tensor) or v.shape != u_t.shape:
+            returned = tuple(v.shape) if isinstance(v, torch.Tensor) else shown(v)
             raise ValueError(
-                f"Adapter: the model returned {tuple(v.shape)} for {tuple(u_t.shape)}; "
+                f"Adapter: the model returned {returned} for {tuple(u_t.shape)}; "
                 "does it predict a velocity?"
             )
         return self.from_model(v, x_t.shape) * std + mean
@@ -87,6 +99,9 @@ def read_layout(layout: str) -> list[list[str]]:
     """
     groups: list[list[str]] = []
     merging = False
+    paired = isinstance(layout, str) and re.fullmatch(r"([^()]*\([^()]*\))*[^()]*", layout)
+    if not paired:
+        raise ValueError(f"Adapter: layout is a text with closed parentheses, not {shown(layout)}")
     for word in layout.replace("(", " ( ").replace(")", " ) ").split():
         if word in "()":
             merging = word == "("
