@@ -36,9 +36,12 @@ def build_parser() -> argparse.ArgumentParser:
     sample.set_defaults(run=run_sample)
 
     reproduce = commands.add_parser("reproduce", help="measure or draw again what the docs show")
-    reproduce.add_argument("name", choices=["noise-reading", "posterior", "contact-sheet"])
+    reproduce.add_argument(
+        "name", help="contact-sheet, data-card, fewer-steps, noise-reading or posterior"
+    )
     reproduce.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
-    reproduce.add_argument("--out", type=Path, default=Path("book/pictures"), help="for pictures")
+    reproduce.add_argument("--out", type=Path, default=Path("book"), help="folder (default: book)")
+    reproduce.add_argument("--real", type=Path, help="real clips (.npz) for the data card")
     reproduce.add_argument("--quick", action="store_true", help="a few minutes, wide intervals")
     reproduce.add_argument("--json", type=Path, help="write the numbers to this file")
     reproduce.set_defaults(run=run_reproduce)
@@ -114,21 +117,12 @@ def run_sample(options: argparse.Namespace) -> dict:
 
 def run_reproduce(options: argparse.Namespace) -> dict:
     """Run one study."""
-    from projflow_lite.prior import load_prior
-    from projflow_lite.studies import contact_sheet, noise_reading, posterior
+    from projflow_lite.studies.commands import STUDIES, Wanted
 
-    if options.name == "posterior":
-        rows = posterior.run(options.quick)
-        print(posterior.table(rows))
-        picture = posterior.figure(rows, options.out / "posterior.png")
-        return {"picture": str(picture), "rows": rows}
-    prior = load_prior(options.prior)
-    if options.name == "contact-sheet":
-        return {"written": [str(path) for path in contact_sheet.run(prior, options.out)]}
-    clips, seeds = (24, 2) if options.quick else (64, 3)
-    rows = noise_reading.run(prior, clips, seeds)
-    print(noise_reading.table(rows))
-    return {"rows": rows}
+    if options.name not in STUDIES:
+        raise ValueError(f"'{options.name}' is not a study; try {', '.join(STUDIES)}")
+    wanted = Wanted(options.prior, options.out, options.real, options.quick)
+    return STUDIES[options.name](wanted)
 
 
 def run_score(options: argparse.Namespace) -> dict:

@@ -8,6 +8,7 @@ import pytest
 import projflow_lite as pf
 from projflow_lite.cli import main
 from projflow_lite.exchange.pictures import camera, contact_sheet, film
+from projflow_lite.studies.commands import STUDIES
 
 
 def test_train_then_sample_with_what_was_trained(tmp_path, capsys):
@@ -97,6 +98,17 @@ def test_every_command_has_help(command, capsys):
         main([*command, "--help"])
     assert stopped.value.code == 0
     assert "usage: projflow-lite" in capsys.readouterr().out
+
+
+def test_every_study_is_named_in_the_help_and_no_other_is_run(capsys):
+    with pytest.raises(SystemExit):
+        main(["reproduce", "--help"])
+    text = capsys.readouterr().out
+    assert all(name in text for name in STUDIES)
+    assert main(["reproduce", "posteriors"]) == 2
+    error = capsys.readouterr().err
+    assert "'posteriors' is not a study" in error
+    assert "noise-reading" in error
 
 
 def test_the_camera_sees_the_left_hand_on_the_right_and_up_is_up():
