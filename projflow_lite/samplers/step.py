@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from copy import copy
+
+import numpy as np
 import torch
 from numpy.typing import ArrayLike
 
 from projflow_lite.constraints import Wish
 from projflow_lite.projection import Projector, check_metric
 from projflow_lite.samplers.guides import Guides, GuideSettings
+from projflow_lite.skeleton import shown
 
 
 class ProjectionStep:
@@ -34,6 +38,8 @@ class ProjectionStep:
         dtype: torch.dtype = torch.float32,
         guides: bool | GuideSettings = True,
     ) -> None:
+        if not isinstance(wish, Wish):
+            raise ValueError(f"ProjectionStep: a wish is made by pin and others, not {shown(wish)}")
         rows = wish.rows(frames)
         settings = guides if isinstance(guides, GuideSettings) else None
         guide = Guides(rows, check_metric(metric), settings, dtype) if guides else None
@@ -45,6 +51,17 @@ class ProjectionStep:
         """Project ``(batch, frames, 22, 3)``, metres, as asked for at flow time `t`."""
         variance = self.guides.variance(x1_hat, t) if self.guides else None
         return self.projector.project(x1_hat, variance)
+
+    def aimed_at(self, y: ArrayLike) -> ProjectionStep:
+        """The same step with other targets, one set for each motion of a batch.
+
+        Args:
+            y: ``(batch, m)``, in the order of the wish's rows.
+        """
+        y = np.asarray(y, float)
+        other = copy(self)
+        other.projector = self.projector.aimed_at(self.guides.targets(y) if self.guides else y)
+        return other
 
     def variance(self, x1_hat: torch.Tensor, t: float) -> torch.Tensor:
         """Variance of every row at time `t`, ``(batch, rows)``; infinity where a guide is idle."""

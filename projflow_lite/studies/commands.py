@@ -26,7 +26,9 @@ def run_posterior(wanted: Wanted) -> dict[str, Any]:
     """Does projection sampling draw from p(x | y)?"""
     rows = posterior.run(wanted.quick)
     print(posterior.table(rows))
-    picture = posterior.figure(rows, wanted.out / "pictures" / "posterior.png")
+    pictures = wanted.out / "pictures"
+    pictures.mkdir(parents=True, exist_ok=True)
+    picture = posterior.figure(rows, pictures / "posterior.png")
     return {"picture": str(picture), "rows": rows}
 
 
@@ -48,7 +50,9 @@ def run_fewer_steps(wanted: Wanted) -> dict[str, Any]:
     """How few steps keep the quality of a hundred?"""
     rows = fewer_steps.run(load_prior(wanted.prior), wanted.quick)
     print(fewer_steps.table(rows))
-    picture = fewer_steps.figure(rows, wanted.out / "pictures" / "fewer-steps.png")
+    pictures = wanted.out / "pictures"
+    pictures.mkdir(parents=True, exist_ok=True)
+    picture = fewer_steps.figure(rows, pictures / "fewer-steps.png")
     return {"picture": str(picture), "rows": rows}
 
 

@@ -17,21 +17,19 @@ import torch
 from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
-from data_synth import Clips, make_clips
+from data_synth import Clips, held_out
 from projflow_lite import scores
 from projflow_lite.constraints import pin
 from projflow_lite.prior import Prior
-from projflow_lite.projection import Projector, kinematic_joint_metric
-from projflow_lite.samplers import Guides, flow_times, guided, projflow, sample
+from projflow_lite.samplers import ProjectionStep, flow_times, guided, projflow, sample
 from projflow_lite.skeleton import joint_index
 
 FRAMES = 60
-HELD_OUT_SEED = 987_654
-"""Far from the seeds that training draws its clips from."""
 
 READINGS: dict[str, dict[str, Any]] = {
     "original": {"noise": "original", "eta": "paper"},
     "implied": {"noise": "implied", "eta": "paper"},
+    "implied, ddpm": {"noise": "implied", "eta": "ddpm"},
     "implied, none fresh": {"noise": "implied", "eta": 0.0},
 }
 
@@ -41,6 +39,22 @@ def keyframes(count: int) -> NDArray[np.int64]:
     if count == FRAMES:
         return np.arange(FRAMES)
     return np.linspace(0, FRAMES - 1, count + 2).round().astype(int)[1:-1]
+
+
+def through_keyframes(positions: NDArray, joint: str, keys: int) -> ProjectionStep:
+    """A projection step that leads every clip of a batch through keyframes of its own.
+
+    The rows, their factorisation and the guides are shared; only the targets differ.
+
+    Args:
+        positions: ``(clips, frames, 22, 3)`` metres: where the targets are taken from.
+        joint: the joint that is pinned.
+        keys: number of keyframes, see `keyframes`.
+    """
+    frames = keyframes(keys)
+    targets = positions[:, frames, joint_index(joint, "noise_reading")]
+    step = ProjectionStep(pin(joint, frames, targets[0]), FRAMES)
+    return step.aimed_at(targets.reshape(len(targets), -1))
 
 
 def controlled(
@@ -58,30 +72,20 @@ def controlled(
     Returns:
         ``(clips, frames, 22, 3)`` metres.
     """
-    frames = keyframes(keys)
-    targets = clips.positions[:, frames][:, :, [joint_index(joint, "noise_reading")]]
-    guides = Guides(pin(joint, frames, targets[0, :, 0]).rows(FRAMES), kinematic_joint_metric())
-    projector = Projector(guides.rows)
-    projector = projector.aimed_at(guides.targets(targets.reshape(len(targets), -1)))
-
-    def project(x1_hat: torch.Tensor, t: float) -> torch.Tensor:
-        return projector.project(x1_hat, guides.variance(x1_hat, t))
-
+    project = through_keyframes(clips.positions, joint, keys)
     generator = torch.Generator().manual_seed(seed)
     x0 = prior.noise_std * torch.randn(clips.positions.shape, generator=generator)
-    times = flow_times(steps)
     with torch.inference_mode():
-        field = guided(prior, guidance)
         x = projflow(
-            field, project, x0, times, generator, clips.captions,
+            guided(prior, guidance), project, x0, flow_times(steps), generator, clips.captions,
             noise_std=prior.noise_std, **options,
         )  # fmt: skip
     return x.numpy()
 
 
-def held_out(clips: int, seed: int) -> NDArray:
-    """Motions of the data itself, other ones for every seed."""
-    return make_clips(clips, frames=FRAMES, seed=HELD_OUT_SEED + 2 + seed).positions
+def data(clips: int, seed: int) -> NDArray:
+    """Motions of the data itself, other ones for every seed, none of them wished for."""
+    return held_out(clips, FRAMES, 2 + seed).positions
 
 
 def free(prior: Prior, clips: Clips, guidance: float, steps: int, seed: int) -> NDArray:
@@ -133,11 +137,10 @@ def run(
         One record a row: what was asked for and its scores. The first rows are held-out data
         against held-out data, and unconstrained samples.
     """
-    wished = make_clips(clips, frames=FRAMES, seed=HELD_OUT_SEED)
-    reference = make_clips(8 * clips, frames=FRAMES, seed=HELD_OUT_SEED + 1).positions
-    data = partial(held_out, clips)
+    wished = held_out(clips, FRAMES, 0)
+    reference = held_out(8 * clips, FRAMES, 1).positions
     rows: list[dict[str, Any]] = [
-        {"method": "held-out data", "scores": repeat(data, reference, seeds)}
+        {"method": "held-out data", "scores": repeat(partial(data, clips), reference, seeds)}
     ]
     for guidance in guidances:
         make = partial(free, prior, wished, guidance, steps)

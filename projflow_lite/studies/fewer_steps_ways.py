@@ -1,0 +1,165 @@
+"""The ways to sample that the study of fewer steps compares."""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import torch
+from numpy.typing import NDArray
+
+from data_synth import Clips
+from projflow_lite.prior import Prior
+from projflow_lite.prior.model import Text
+from projflow_lite.samplers.euler import euler, multistep
+from projflow_lite.samplers.projflow import Velocity, projflow
+from projflow_lite.studies.noise_reading import through_keyframes
+
+STEPS, QUICK_STEPS = (5, 10, 15, 25, 50, 100), (5, 10, 50)
+
+WISHES = (("pelvis", 5), ("left_wrist", 1), ("pelvis", 1), ("left_wrist", 5))
+"""Joint and number of keyframes. The first two are measured with every spacing and solver."""
+
+DEFAULT = tuple(inspect.signature(projflow).parameters[name].default for name in ("noise", "eta"))
+READINGS = list(dict.fromkeys([
+    DEFAULT, ("implied", "ddpm"), ("implied", "paper"), ("implied", 0.0),
+    ("original", "paper"), ("original", 0.0),
+]))  # fmt: skip
+"""Which noise eq. 9 mixes, and the share of it that is fresh; the sampler's default first."""
+
+
+def heun(velocity: Velocity, times: Sequence[float]) -> Velocity:
+    """The mean of the velocities at both ends of a step; the last step, up to 1, is Euler's."""
+    following = dict(itertools.pairwise(times))
+
+    def field(x_t: torch.Tensor, t: float, text: Text = None) -> torch.Tensor:
+        v, t_next = velocity(x_t, t, text), following[t]
+        if t_next == 1:
+            return v
+        return (v + velocity(x_t + (t_next - t) * v, t_next, text)) / 2
+
+    return field
+
+
+def midpoint(velocity: Velocity, times: Sequence[float]) -> Velocity:
+    """The velocity in the middle of a step."""
+    following = dict(itertools.pairwise(times))
+
+    def field(x_t: torch.Tensor, t: float, text: Text = None) -> torch.Tensor:
+        half = (following[t] - t) / 2
+        return velocity(x_t + half * velocity(x_t, t, text), t + half, text)
+
+    return field
+
+
+SCHEDULES: dict[str, Callable[[float], float]] = {
+    "even": lambda u: u,
+    "quadratic": lambda u: 1 - (1 - u) ** 2,
+    "cubic": lambda u: 1 - (1 - u) ** 3,
+    "both ends": lambda u: (1 - math.cos(math.pi * u)) / 2,
+}
+"""Flow time after the share `u` of all steps."""
+
+SOLVERS: dict[str, Callable[[Velocity, Sequence[float]], Velocity]] = {
+    "Euler": lambda velocity, times: velocity,
+    "multistep": multistep,
+    "Heun": heun,
+    "midpoint": midpoint,
+}
+"""From a velocity field and the times of the steps to a field whose Euler steps are better."""
+
+
+class Way(NamedTuple):
+    """One way to sample. Without a joint there is no wish, and eq. 9 plays no part."""
+
+    schedule: str
+    solver: str
+    steps: int
+    joint: str = ""
+    keyframes: int = 0
+    noise: str = ""
+    eta: str | float = ""
+
+    @property
+    def times(self) -> list[float]:
+        """Flow times from 0 to 1."""
+        return [SCHEDULES[self.schedule](k / self.steps) for k in range(self.steps + 1)]
+
+    @property
+    def calls(self) -> int:
+        """How often the network is asked."""
+        return {"Heun": 2 * self.steps - 1, "midpoint": 2 * self.steps}.get(self.solver, self.steps)
+
+    @property
+    def task(self) -> str:
+        """What is asked for, in words."""
+        plural = "" if self.keyframes == 1 else "s"
+        return f"{self.joint}, {self.keyframes} keyframe{plural}" if self.joint else "no wish"
+
+
+FINE = Way("cubic", "midpoint", 100)
+"""As close to the flow as is affordable."""
+
+
+def all_ways(quick: bool = False) -> list[Way]:
+    """Everything that is measured; only Euler's steps are taken to the largest number."""
+    steps = QUICK_STEPS if quick else STEPS
+    twice = [count for count in steps if 4 * count <= steps[-1]]
+    one_call = {"Euler": steps, "multistep": steps[:-1]}
+    every = one_call | {"Heun": twice, "midpoint": twice}
+    spacings = [name for name in SCHEDULES if not (quick and name == "both ends")]
+    found = [Way(*how) for how in crossed(spacings, every)]
+    for k, wish in enumerate(WISHES[:1] if quick else WISHES):
+        for reading in READINGS:
+            usual = reading == DEFAULT and k < 2
+            hows = crossed(["quadratic"], every if usual else one_call)
+            if usual and not quick:
+                hows = crossed(spacings, every)
+            found += [Way(*how, *wish, *reading) for how in hows]
+    return found
+
+
+def crossed(
+    schedules: Iterable[str], counts: Mapping[str, Sequence[int]]
+) -> list[tuple[str, str, int]]:
+    """Every schedule with every solver, at the numbers of steps given for that solver."""
+    return [(s, solver, count) for s in schedules for solver in counts for count in counts[solver]]
+
+
+class Counted:
+    """A velocity field that counts how often it is asked."""
+
+    def __init__(self, velocity: Velocity) -> None:
+        self.velocity, self.calls = velocity, 0
+
+    def __call__(self, x_t: torch.Tensor, t: float, text: Text = None) -> torch.Tensor:
+        """Velocity at ``(batch, frames, 22, 3)``."""
+        self.calls += 1
+        return self.velocity(x_t, t, text)
+
+
+def make(prior: Prior, way: Way, clips: Clips, seed: int) -> tuple[NDArray, int]:
+    """A motion for every clip, from its prompt and, if there is a wish, its keyframes.
+
+    The noise of the start depends on the seed alone, and so is the same for all ways.
+
+    Returns:
+        ``(clips, frames, 22, 3)`` metres, and the number of network calls.
+    """
+    network = Counted(prior)
+    velocity = SOLVERS[way.solver](network, way.times)
+    generator = torch.Generator().manual_seed(seed)
+    x0 = prior.noise_std * torch.randn(clips.positions.shape, generator=generator)
+    with torch.inference_mode():
+        if not way.joint:
+            x1 = euler(velocity, x0, way.times, clips.captions)
+        else:
+            project = through_keyframes(clips.positions, way.joint, way.keyframes)
+            x1 = projflow(
+                velocity, project, x0, way.times, generator, clips.captions,
+                noise=way.noise, eta=way.eta, noise_std=prior.noise_std,
+            )  # fmt: skip
+    return x1.numpy(), network.calls
