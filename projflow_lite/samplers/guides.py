@@ -92,12 +92,19 @@ class Guides:
             np.concatenate([rows.y, guides.y]),
             np.concatenate([rows.variance, guides.variance]),
         )
-        frame, joint = np.divmod(place.column // 3, N_JOINTS)
         as_tensor = lambda value: torch.tensor(np.array(value), dtype=dtype)  # noqa: E731
-        self.frame, self.joint = torch.as_tensor(frame), torch.as_tensor(joint)
-        self.distance = as_tensor(place.distance)
-        self.R_J, self.q = as_tensor(R_J), as_tensor(influence_weights(R_J, self.settings.form))
-        self.r = as_tensor(marginal_variance(R_J))
+        frame, joint = np.divmod(place.column // 3, N_JOINTS)
+        q = influence_weights(R_J, self.settings.form)
+        self.frame, self.distance = torch.as_tensor(frame), as_tensor(place.distance)
+        self.q, self.r = as_tensor(q[joint]), as_tensor(marginal_variance(R_J)[joint])
+        # Trust is shared out among joints: one takes part where any of its axes has a guide near.
+        point, of_row = np.unique(place.column // 3, return_inverse=True)
+        nearest = np.full(len(point), np.inf)
+        np.minimum.at(nearest, of_row, place.distance)
+        self.point_frame = torch.as_tensor(point // N_JOINTS)
+        self.point_distance, self.point_q = as_tensor(nearest), as_tensor(q[point % N_JOINTS])
+        # With R_J = C Cᵀ, the length of eq. 17 is that of Cᵀ times the bend: one product of all.
+        self.C = as_tensor(np.kron(np.linalg.cholesky(R_J), np.eye(3)))
         self.given = as_tensor(rows.variance)
 
     def __len__(self) -> int:
@@ -117,32 +124,37 @@ class Guides:
             t: flow time.
         """
         c = self.settings
-        near = self.distance < (1 - t) * c.l_max + t * c.l_min  # eq. 14
-        budget = self.frame_trust(x1_hat, t)[:, self.frame]
+        radius = (1 - t) * c.l_max + t * c.l_min  # eq. 14
+        budget = self.frame_trust(x1_hat, t)
         if c.form == "released":
             budget = budget.clamp(c.pi_min, c.pi_max)
-        active = torch.zeros(self.frames, N_JOINTS, dtype=self.q.dtype)
-        active[self.frame[near], self.joint[near]] = 1.0
-        total = (active * self.q).sum(1)[self.frame].clamp(min=1e-12)
-        pi = (budget * self.q[self.joint] / total).clamp(c.pi_min, c.pi_max)  # eq. 52
-        sigma2 = self.r[self.joint] * (1 / pi - 1)  # eq. 18, 47
-        soft = torch.where(near, sigma2, torch.inf)
+        q_near = self.point_q * (self.point_distance < radius)
+        total = self.q.new_zeros(self.frames).index_add(0, self.point_frame, q_near)
+        budget = budget / total.clamp(min=1e-12)
+        pi = (budget.index_select(1, self.frame) * self.q).clamp(c.pi_min, c.pi_max)  # eq. 52
+        sigma2 = self.r * (1 / pi - 1)  # eq. 18, 47
+        soft = torch.where(self.distance < radius, sigma2, torch.inf)
         return torch.cat([self.given.expand(len(soft), -1), soft], dim=1)
 
     def frame_trust(self, x1_hat: torch.Tensor, t: float) -> torch.Tensor:
         """Trust in the guides of each frame before it is shared out, ``(batch, frames)``."""
         c = self.settings
-        if self.frames < 3:
-            ratio = torch.zeros(len(x1_hat), self.frames, dtype=x1_hat.dtype)
-        else:
-            bend = x1_hat.diff(n=2, dim=1)
-            s = torch.einsum("bnjc,jk,bnkc->bn", bend, self.R_J, bend).clamp(min=0).sqrt()  # eq. 17
-            s = torch.cat([s[:, :1], s, s[:, -1:]], dim=1)
-            median = "midpoint" if c.form == "printed" else "lower"
-            middle = s.quantile(0.5, dim=1, keepdim=True, interpolation=median)
-            ratio = torch.where(s > 0, s / middle, 0.0)
         tau = c.tau_min + (1 - c.tau_min) * (1 - t)  # eq. 16
+        if self.frames < 3:
+            return torch.full_like(x1_hat[..., 0, 0], tau * c.c0)
+        bend = x1_hat.flatten(2).diff(n=2, dim=1)
+        s = torch.linalg.vector_norm(bend @ self.C, dim=2)  # eq. 17
+        s = torch.cat([s[:, :1], s, s[:, -1:]], dim=1)
+        ratio = torch.where(s > 0, s / middle(s, c.form), 0.0)
         return tau * c.c0 / (1 + c.lambda_s * ratio**c.p)  # eq. 15
+
+
+def middle(s: torch.Tensor, form: str) -> torch.Tensor:
+    """Median along the last dimension, ``(..., 1)``; released: the lower one of an even number."""
+    rising = s.sort(dim=-1).values
+    low = (s.shape[-1] - 1) // 2
+    high = low if form == "released" else s.shape[-1] // 2
+    return (rising[..., low, None] + rising[..., high, None]) / 2
 
 
 @dataclass(frozen=True)
@@ -170,17 +182,20 @@ def between_keyframes(pinned: NDArray, frames: int) -> Between:
         pinned: ``(pins,)`` columns of the pinned coordinates.
         frames: of the motion.
     """
-    stride = N_JOINTS * 3
-    parts: list[list[NDArray]] = [[np.zeros(0, int)] * 3 + [np.zeros(0)] * 2]
-    for coordinate in np.unique(pinned % stride):
-        mine = np.flatnonzero(pinned % stride == coordinate)
-        mine = mine[np.argsort(pinned[mine], kind="stable")]
-        keys = pinned[mine] // stride
-        free = np.setdiff1d(np.arange(frames), keys)
-        right = np.searchsorted(keys, free)
-        left, right = (right - 1).clip(0), right.clip(max=len(keys) - 1)
-        gap = np.maximum(keys[right] - keys[left], 1)
-        share = np.where(left == right, 0.0, (free - keys[left]) / gap)
-        distance = np.minimum(np.abs(free - keys[left]), np.abs(keys[right] - free))
-        parts.append([free * stride + coordinate, mine[left], mine[right], share, distance])
-    return Between(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    coordinates, line = np.unique(pinned % (N_JOINTS * 3), return_inverse=True)
+    pin = np.full((len(coordinates), frames), -1)
+    pin[line, pinned // (N_JOINTS * 3)] = np.arange(len(pinned))
+    frame = np.arange(frames)
+    left = np.maximum.accumulate(np.where(pin >= 0, frame, -1), axis=1)
+    right = np.minimum.accumulate(np.where(pin >= 0, frame, frames)[:, ::-1], axis=1)[:, ::-1]
+    line, free = np.nonzero(pin < 0)
+    left, right = left[line, free], right[line, free]
+    # Outside the first and the last keyframe there is one neighbour, which stands for both.
+    left, right = np.where(left < 0, right, left), np.where(right == frames, left, right)
+    return Between(
+        column=free * N_JOINTS * 3 + coordinates[line],
+        before=pin[line, left],
+        after=pin[line, right],
+        share=(free - left) / np.maximum(right - left, 1) * (left != right),
+        distance=np.minimum(np.abs(free - left), np.abs(right - free)),
+    )

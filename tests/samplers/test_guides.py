@@ -65,6 +65,49 @@ def test_variances_are_those_of_the_equations(t, form):
         assert np.isfinite(ours[clip, m:]).sum() == np.isfinite(expected).sum()
 
 
+@pytest.mark.parametrize("form", ["printed", "released"])
+@pytest.mark.parametrize("frames", [3, 4, 8, 9])
+def test_trust_is_that_of_the_equations_for_odd_and_even_lengths(frames, form):
+    guides = Guides(pf.pin("head", 1, [0, 1, 2]).rows(frames), R_J, GuideSettings(form=form))
+    x = np.random.default_rng(1).normal(size=(2, frames, 22, 3)).cumsum(1)
+    ours = guides.frame_trust(torch.as_tensor(x, dtype=torch.float32), 0.4)
+    c = SETTINGS
+    for clip in range(2):
+        s = equations.curvature(x[clip], R_J)
+        expected = equations.frame_trust(s, 0.4, c.c0, c.lambda_s, c.p, c.tau_min, form)
+        np.testing.assert_allclose(ours[clip], expected, rtol=1e-5)
+
+
+@pytest.mark.parametrize("frames", [1, 2])
+def test_what_is_too_short_to_bend_is_trusted_fully(frames):
+    guides = Guides(pf.pin("head", 0, [0, 1, 2]).rows(frames), R_J)
+    x = torch.randn(2, frames, 22, 3)
+    # By hand, at t = 1: c0 times tau_min, over 1 and no curvature.
+    torch.testing.assert_close(guides.frame_trust(x, 1.0), torch.full((2, frames), 3.0 * 0.1))
+
+
+def test_a_resting_body_is_trusted_fully_where_it_rests():
+    guides = Guides(pf.pin("head", 0, [0, 1, 2]).rows(9), R_J)
+    x = torch.zeros(1, 9, 22, 3)
+    x[0, 7:] = 1.0  # bends at frames 6 and 7 only, so that the median is 0
+    trust = guides.frame_trust(x, 0.0)[0]
+    torch.testing.assert_close(trust[:6], torch.full((6,), 3.0))
+    assert (trust[6:8] == 0).all()
+
+
+def test_axes_of_one_joint_may_have_keyframes_of_their_own():
+    wish = pf.pin("head", 2, [1.0], axes="y") & pf.pin("head", [6, 8], [[3.0], [5.0]], axes="x")
+    guides = Guides(wish.rows(10), R_J)
+    column = guides.rows.A.indices[3:]
+    frame, axis = column // 66, column % 3
+    height = axis == 1
+    np.testing.assert_array_equal(guides.rows.y[3:][height], 1.0)
+    np.testing.assert_array_equal(guides.distance.numpy()[height], np.abs(frame[height] - 2))
+    assert dict(zip(frame[~height], guides.rows.y[3:][~height], strict=True)) == {
+        **dict.fromkeys(range(6), 3.0), 7: 4.0, 9: 5.0,
+    }  # fmt: skip
+
+
 def test_targets_are_the_interpolated_observations():
     observed, values = observed_and_values()
     line, has_guide = equations.interpolate_observations(values, observed)
