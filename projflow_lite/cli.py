@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 import time
 from dataclasses import replace
@@ -176,6 +177,8 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("\nStopped. The same command goes on from here.", file=sys.stderr)
         return 130
+    if os.environ.get("RANK", "0") != "0":  # one of several processes that train: the first speaks
+        return numbers.get("exit_code", 0)
     for name, value in numbers.items():
         if name not in ("rows", "as_printed", "exit_code"):
             print(f"{name}: {value}")

@@ -14,8 +14,11 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import closing
+from copy import deepcopy
 from dataclasses import asdict, dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -23,9 +26,13 @@ import torch
 from tqdm.auto import tqdm
 
 from data_synth import make_clips
+from data_synth.captions import phrases
 from projflow_lite.prior.checkpoint import load_prior, read, save_prior, write
+from projflow_lite.prior.loss_log import LossLog
 from projflow_lite.prior.model import Prior
 from projflow_lite.prior.network import PARENTS, Network
+from projflow_lite.prior.processes import Processes, join
+from projflow_lite.prior.signals import undivided
 from projflow_lite.prior.text import Vocabulary
 
 ROUNDS = 12
@@ -103,6 +110,7 @@ def loss_of(
     ids: torch.Tensor,
     random: torch.Generator,
     lengths: float = 0.0,
+    part: slice = slice(None),
 ) -> torch.Tensor:
     """Flow-matching loss of a batch of motions.
 
@@ -116,9 +124,12 @@ def loss_of(
         ids: ``(batch, words)`` their prompts.
         random: where flow times and noise are drawn from.
         lengths: how much an error in the length of a bone counts at the end of the flow.
+        part: the motions that this process answers for. Times and noise are drawn for all, so
+            that they are the same for any number of processes.
     """
     t = flow_times(len(u1), random)
     u0 = torch.randn(u1.shape, generator=random)
+    u0, u1, t, ids = (each[part].to(u1.device) for each in (u0, u1, t, ids))
     share = t.view(-1, 1, 1, 1)
     error = network((1 - share) * u0 + share * u1, t, ids) - u1
     true, bones = (x[:, :, 1:] - x[:, :, list(PARENTS[1:])] for x in (u1, error))
@@ -146,34 +157,46 @@ def learning_rate(recipe: Recipe, step: int) -> float:
     return recipe.learning_rate * warm * 0.5 * (1 + math.cos(math.pi * fall))
 
 
+@cache
+def scale_of_data(seed: int) -> tuple[torch.Tensor, float]:
+    """Mean position of every joint, ``(22, 3)`` metres, and the spread around it, metres."""
+    positions = torch.as_tensor(make_clips(2048, frames=60, seed=seed).positions)
+    mean = positions.mean((0, 1))
+    return mean, float((positions - mean).square().mean().sqrt())
+
+
 class Trainer:
     """A training run: its state, one step of it, and how it is stored.
 
     Args:
         recipe: what to train.
+        here: the processes that share the work; by default there is this one only.
+
+    Raises:
+        ValueError: if a batch cannot be shared equally.
     """
 
-    def __init__(self, recipe: Recipe) -> None:
-        self.recipe, self.step = recipe, 0
+    def __init__(self, recipe: Recipe, here: Processes | None = None) -> None:
+        self.recipe, self.step, self.smooth = recipe, 0, math.nan
+        self.here = here or Processes()
+        self.part = self.here.part(recipe.batch)
         torch.manual_seed(recipe.seed)
-        look = make_clips(2048, frames=60, seed=recipe.seed)
-        positions = torch.as_tensor(look.positions)
-        mean = positions.mean((0, 1))
+        mean, noise_std = scale_of_data(recipe.seed)
         self.prior = Prior(
-            Vocabulary.of(look.captions),
+            Vocabulary.of(phrases()),
             mean,
-            float((positions - mean).square().mean().sqrt()),
+            noise_std,
             (min(recipe.lengths), max(recipe.lengths)),
             {"widths": list(recipe.widths)},
             asdict(recipe),
         )
-        self.network = self.prior.network
+        self.network = self.prior.network.to(self.here.device)
         self.average = {k: v.detach().clone() for k, v in self.network.named_parameters()}
         self.optimiser = torch.optim.AdamW(self.network.parameters(), weight_decay=0.01)
         self.chunk: tuple[int, list[tuple[torch.Tensor, torch.Tensor]]] | None = None
 
     def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
-        """Motions and prompts of the current step."""
+        """Motions and prompts of the current step, those of all processes."""
         lengths = self.recipe.lengths
         number, place = divmod(self.step, REUSE * ROUNDS * len(lengths))
         if self.chunk is None or self.chunk[0] != number:
@@ -183,7 +206,7 @@ class Trainer:
         first = turn % ROUNDS * self.recipe.batch
         part = slice(first, first + self.recipe.batch)
         u1, ids = self.chunk[1][which]
-        return u1[part], ids[part]
+        return u1[part].to(self.here.device), ids[part].to(self.here.device)
 
     def clips(self, frames: int, random: np.random.Generator) -> tuple[torch.Tensor, torch.Tensor]:
         """Fresh motions of one length, centred and scaled, and their prompts, some left out."""
@@ -193,16 +216,23 @@ class Trainer:
         prompts = [None if d else c for c, d in zip(made.captions, dropped, strict=True)]
         return u1, self.prior.vocabulary.encode(prompts)
 
+    def loss(self, u1: torch.Tensor, ids: torch.Tensor, random: torch.Generator) -> torch.Tensor:
+        """Loss of this process' part of a batch at the current step, see `loss_of`."""
+        lengths = LENGTHS if self.recipe.second_round(self.step) else 0.0
+        return loss_of(self.network, u1, ids, random, lengths, self.part)
+
     def advance(self) -> float:
         """Make one step; return its loss."""
         random = torch.Generator().manual_seed(self.recipe.seed * 1_000_003 + self.step)
-        with torch.autocast("cpu", torch.bfloat16, enabled=self.recipe.bfloat16):
-            lengths = LENGTHS if self.recipe.second_round(self.step) else 0.0
-            loss = loss_of(self.network, *self.batch(), random, lengths)
-        if not torch.isfinite(loss):
-            raise ValueError(f"train: the loss is {loss.item()} at step {self.step}; learn slower")
+        kind = self.here.device.type
+        with torch.autocast(kind, torch.bfloat16, enabled=self.recipe.bfloat16):
+            loss = self.loss(*self.batch(), random)
         self.optimiser.zero_grad()
         loss.backward()
+        gradients = [w.grad for w in self.network.parameters() if w.grad is not None]
+        self.here.average([loss, *gradients])
+        if not torch.isfinite(loss):
+            raise ValueError(f"train: the loss is {loss.item()} at step {self.step}; learn slower")
         torch.nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
         for group in self.optimiser.param_groups:
             group["lr"] = learning_rate(self.recipe, self.step)
@@ -211,7 +241,9 @@ class Trainer:
         keep = min(self.recipe.ema, (1 + self.step) / (10 + self.step))
         for name, weight in self.network.named_parameters():
             self.average[name].lerp_(weight.detach(), 1 - keep)
-        return float(loss.detach())
+        now = float(loss.detach())
+        self.smooth = now if math.isnan(self.smooth) else 0.98 * self.smooth + 0.02 * now
+        return now
 
     def save(self, path: Path) -> None:
         """Store the run, so that `resume` goes on exactly from here."""
@@ -220,35 +252,102 @@ class Trainer:
         tensors |= {f"weight.{k}": v.detach() for k, v in self.network.named_parameters()}
         tensors |= {f"moment.{i}.{k}": v for i, s in moments.items() for k, v in s.items()}
         about = {"step": str(self.step), "recipe": json.dumps(asdict(self.recipe))}
+        about |= {"smooth": repr(self.smooth), "words": json.dumps(self.prior.vocabulary.words)}
         write({k: v.contiguous() for k, v in tensors.items()}, about, path)
 
     def resume(self, path: Path) -> None:
         """Go on from a stored run.
 
         Raises:
-            ValueError: if the file is damaged or belongs to another recipe.
+            ValueError: if the file is damaged, or belongs to another recipe or network.
         """
         tensors, about = read(path)
         if about.get("recipe") != json.dumps(asdict(self.recipe)):
             raise ValueError(f"train: {path} was made by another recipe; choose another folder")
-        self.network.load_state_dict(part_of(tensors, "weight."), strict=False)
-        self.average = part_of(tensors, "average.")
+        average, weights = part_of(tensors, "average."), part_of(tensors, "weight.")
+        shapes = {name: weight.shape for name, weight in self.network.named_parameters()}
+        words = about.get("words", json.dumps(self.prior.vocabulary.words))
+        if any({k: w.shape for k, w in stored.items()} != shapes for stored in (average, weights)):
+            raise ValueError(f"train: {path} belongs to another network; choose another folder")
+        if words != json.dumps(self.prior.vocabulary.words):
+            raise ValueError(f"train: {path} knows other words; choose another folder")
+        self.network.load_state_dict(weights, strict=False)
+        self.average = {k: v.to(self.here.device) for k, v in average.items()}
         state: dict[int, dict[str, torch.Tensor]] = {}
         for name, value in part_of(tensors, "moment.").items():
             number, key = name.split(".")
             state.setdefault(int(number), {})[key] = value
         self.optimiser.load_state_dict(self.optimiser.state_dict() | {"state": state})
-        self.step = int(about["step"])
+        self.step, self.smooth = int(about["step"]), float(about.get("smooth", "nan"))
 
     def result(self) -> Prior:
-        """The prior with the averaged weights."""
-        self.prior.network.load_state_dict(self.average, strict=False)
-        return self.prior.eval().requires_grad_(False)
+        """A prior with the averaged weights of this moment; training may go on."""
+        prior = deepcopy(self.prior).cpu()
+        prior.network.load_state_dict(self.average, strict=False)
+        return prior.eval().requires_grad_(False)
 
 
 def part_of(tensors: dict[str, torch.Tensor], prefix: str) -> dict[str, torch.Tensor]:
     """The tensors whose name begins with `prefix`, without it."""
     return {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
+
+
+def begin(recipe: Recipe, folder: str | Path) -> Trainer:
+    """A new run, or the one that a folder holds, where it was left.
+
+    Args:
+        recipe: what to train.
+        folder: made if it does not exist; see `train` for what is in it.
+
+    Raises:
+        ValueError: if the folder holds a damaged run, or one of another recipe; or if a batch
+            cannot be shared equally among the processes.
+    """
+    folder = Path(folder)
+    trainer = Trainer(recipe, join())
+    folder.mkdir(parents=True, exist_ok=True)
+    if (folder / "run.safetensors").exists():
+        trainer.resume(folder / "run.safetensors")
+    return trainer
+
+
+def steps_of(trainer: Trainer, folder: str | Path) -> Generator[float, None, None]:
+    """Make the remaining steps of a run; yield the loss of each.
+
+    The run is stored once a minute, at the end, and when nobody asks for a step any more: close
+    the iterator to stop, and begin again to go on.
+
+    Args:
+        trainer: the run, from `begin`.
+        folder: where it was begun.
+
+    Raises:
+        ValueError: if the loss is no number any more.
+    """
+    run, saved, first = Path(folder) / "run.safetensors", time.monotonic(), trainer.here.first
+    log = LossLog(Path(folder) / "loss.jsonl", trainer.step) if first else None
+    try:
+        while trainer.step < trainer.recipe.steps:
+            with undivided():
+                loss = trainer.advance()
+                if log:
+                    log.note(trainer.step, trainer.smooth)
+            if first and time.monotonic() - saved > SAVE_EVERY:
+                trainer.save(run)
+                saved = time.monotonic()
+            yield loss
+    finally:
+        if first:
+            trainer.save(run)
+
+
+def finish(trainer: Trainer, folder: str | Path) -> Prior:
+    """Write the prior that a run has led to, and load it."""
+    path = Path(folder) / "prior.safetensors"
+    if trainer.here.first:
+        save_prior(trainer.result(), path)
+    trainer.here.wait()
+    return load_prior(path)
 
 
 def train(
@@ -270,31 +369,19 @@ def train(
         The trained prior.
 
     Raises:
-        ValueError: if the folder holds a damaged run, or one of another recipe.
+        ValueError: if the folder holds a damaged run, or one of another recipe; or if a batch
+            cannot be shared equally among the processes.
     """
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    trainer, run, saved = Trainer(recipe), folder / "run.safetensors", time.monotonic()
-    if run.exists():
-        trainer.resume(run)
-    bar = tqdm(total=recipe.steps, initial=trainer.step, disable=not progress, unit="step")
-    smooth = None
-    try:
-        while trainer.step < recipe.steps:
-            loss = trainer.advance()
-            smooth = loss if smooth is None else 0.98 * smooth + 0.02 * loss
+    trainer = begin(recipe, folder)
+    silent = not (progress and trainer.here.first)
+    with (
+        closing(steps_of(trainer, folder)) as steps,
+        tqdm(total=recipe.steps, initial=trainer.step, disable=silent, unit="step") as bar,
+    ):
+        for loss in steps:
             bar.update()
+            if trainer.step % 50 == 0:
+                bar.set_postfix(loss=f"{trainer.smooth:.4f}")
             if on_step:
                 on_step(trainer.step, loss)
-            if trainer.step % 50 == 0:
-                bar.set_postfix(loss=f"{smooth:.4f}")
-                with (folder / "loss.jsonl").open("a") as log:
-                    log.write(json.dumps({"step": trainer.step, "loss": smooth}) + "\n")
-            if time.monotonic() - saved > SAVE_EVERY:
-                trainer.save(run)
-                saved = time.monotonic()
-    finally:
-        bar.close()
-        trainer.save(run)
-    save_prior(trainer.result(), folder / "prior.safetensors")
-    return load_prior(folder / "prior.safetensors")
+    return finish(trainer, folder)

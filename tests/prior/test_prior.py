@@ -1,6 +1,8 @@
 """The tiny flow: what it accepts, what it stores, and that training is exact to the step."""
 
 import json
+import shutil
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -9,18 +11,30 @@ import torch
 from scipy.interpolate import BSpline
 
 import projflow_lite as pf
+from data_synth import make_clips
+from data_synth.captions import phrases
+from projflow_lite.prior import training
+from projflow_lite.prior.checkpoint import read, write
+from projflow_lite.prior.loss_log import read_loss, stored_runs
 from projflow_lite.prior.network import bones_to_positions, draw, spline_kernel
+from projflow_lite.prior.signals import undivided
 from projflow_lite.prior.text import TextEncoder, Vocabulary
-from projflow_lite.prior.training import RECIPES, Trainer, learning_rate, loss_of, train
+from projflow_lite.prior.training import RECIPES, Trainer, begin, learning_rate, loss_of, train
 from projflow_lite.skeleton import EDGES
 
 SMOKE = replace(RECIPES["smoke"], steps=6, batch=4)
+SHORT = replace(SMOKE, lengths=(20,))
 
 
 @pytest.fixture(scope="module")
 def trained(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
     return train(SMOKE, folder, progress=False), folder
+
+
+@pytest.fixture(scope="module")
+def short(tmp_path_factory):
+    return train(SHORT, tmp_path_factory.mktemp("short"), progress=False)
 
 
 def weights(prior):
@@ -96,6 +110,20 @@ def test_unknown_words_are_reported_and_left_out():
     assert ids.tolist() == [[1, 3], [0, 0]]
 
 
+def test_the_warning_names_who_never_saw_the_word():
+    with pytest.warns(UserWarning, match="prompt: the evaluator never saw 'jumps'"):
+        Vocabulary(["walks"]).encode(["walks", "jumps"], "evaluator")
+
+
+def test_the_vocabulary_is_what_clips_are_called_and_no_more():
+    captions = make_clips(4096, frames=60, seed=1).captions
+    assert Vocabulary.of(phrases()).words == Vocabulary.of(captions).words
+
+
+def test_every_recipe_knows_the_words_of_the_shipped_prior():
+    assert Trainer(SHORT).prior.vocabulary.words == (pf.load_prior().vocabulary.words)
+
+
 def test_float64_in_is_float64_out(trained):
     prior, _ = trained
     assert prior(torch.randn(1, 60, 22, 3, dtype=torch.float64), 0.5).dtype == torch.float64
@@ -132,6 +160,92 @@ def test_a_run_that_was_interrupted_ends_as_one_that_was_not(trained, tmp_path):
     assert not (tmp_path / "prior.safetensors").exists()
     resumed = train(SMOKE, tmp_path, progress=False)
     assert torch.equal(weights(resumed), weights(trained[0]))
+
+
+@pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("moment", ["loss_of", "learning_rate"])
+def test_a_signal_in_the_middle_of_a_step_waits_for_its_end(
+    short, tmp_path, monkeypatch, moment, sign
+):
+    """`learning_rate` is asked between the gradient and the new weights."""
+    plain, calls = getattr(training, moment), []
+
+    def interrupted(*given):
+        calls.append(1)
+        if len(calls) == 3:
+            signal.raise_signal(sign)
+        return plain(*given)
+
+    monkeypatch.setattr(training, moment, interrupted)
+    with pytest.raises(KeyboardInterrupt if sign == signal.SIGINT else SystemExit):
+        train(SHORT, tmp_path, progress=False)
+    assert int(read(tmp_path / "run.safetensors")[1]["step"]) == 3
+    resumed = train(SHORT, tmp_path, progress=False)
+    assert torch.equal(weights(resumed), weights(short))
+
+
+def test_signals_have_their_old_meaning_after_a_step():
+    before = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+    with undivided():
+        assert signal.getsignal(signal.SIGINT) is not before[0]
+    assert [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)] == before
+
+
+def test_a_run_cut_off_between_two_checkpoints_has_the_same_curve(tmp_path, monkeypatch):
+    """As after a power cut: the checkpoint is of step 31, the log of step 50, its end torn."""
+    recipe = replace(SHORT, steps=100, batch=2)
+    whole, cut = tmp_path / "whole", tmp_path / "cut"
+
+    def power_cut(step, loss):
+        monkeypatch.setattr(training, "SAVE_EVERY", 0.0 if step == 30 else 1e9)
+        if step == 31:
+            shutil.copytree(whole, cut)
+        if step == 60:
+            shutil.copy(whole / "loss.jsonl", cut)
+
+    one = train(recipe, whole, progress=False, on_step=power_cut)
+    with (cut / "loss.jsonl").open("a") as log:
+        log.write('{"step": 1')
+    assert begin(recipe, cut).step == 31
+    two = train(recipe, cut, progress=False)
+    assert torch.equal(weights(one), weights(two))
+    assert (cut / "loss.jsonl").read_bytes() == (whole / "loss.jsonl").read_bytes()
+
+
+def test_the_curve_is_the_smoothed_loss(tmp_path):
+    losses = []
+    recipe = replace(SHORT, steps=50, batch=2)
+    train(recipe, tmp_path, progress=False, on_step=lambda step, loss: losses.append(loss))
+    smooth = losses[0]
+    for loss in losses[1:]:
+        smooth += 0.02 * (loss - smooth)
+    np.testing.assert_allclose(read_loss(tmp_path / "loss.jsonl"), [[50, smooth]])
+
+
+def test_the_shipped_priors_curve_is_that_of_its_recipe():
+    assert "shipped" in stored_runs()
+    steps, loss = read_loss("shipped").T
+    np.testing.assert_array_equal(steps, np.arange(50, pf.load_prior().recipe["steps"] + 1, 50))
+    assert loss[-1] < 0.05 * loss[0]
+
+
+def test_a_curve_that_is_none_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"no log at .*loss\.jsonl"):
+        read_loss(tmp_path / "loss.jsonl")
+    (tmp_path / "loss.jsonl").write_text('{"step": 50}\n')
+    with pytest.raises(ValueError, match=r"loss\.jsonl is not the log of a run"):
+        read_loss(tmp_path / "loss.jsonl")
+
+
+def test_a_run_with_other_words_or_another_network_is_refused(trained, tmp_path):
+    tensors, about = read(trained[1] / "run.safetensors")
+    path = tmp_path / "run.safetensors"
+    write(tensors, about | {"words": '["walks"]'}, path)
+    with pytest.raises(ValueError, match=r"run\.safetensors knows other words"):
+        begin(SMOKE, tmp_path)
+    write({k: v for k, v in tensors.items() if k != "weight.enter.weight"}, about, path)
+    with pytest.raises(ValueError, match=r"run\.safetensors belongs to another network"):
+        begin(SMOKE, tmp_path)
 
 
 def test_a_checkpoint_comes_back_as_it_was(trained, tmp_path):
