@@ -162,6 +162,17 @@ def test_a_run_that_was_interrupted_ends_as_one_that_was_not(trained, tmp_path):
     assert torch.equal(weights(resumed), weights(trained[0]))
 
 
+@pytest.fixture
+def usual_signals():
+    """As in a shell's foreground: a program in its background is born deaf to Ctrl+C."""
+    usual = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
+    before = {number: signal.signal(number, handler) for number, handler in usual.items()}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
+@pytest.mark.usefixtures("usual_signals")
 @pytest.mark.parametrize("sign", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("moment", ["loss_of", "learning_rate"])
 def test_a_signal_in_the_middle_of_a_step_waits_for_its_end(
