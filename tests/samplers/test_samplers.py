@@ -176,7 +176,10 @@ WRONG = [
         lambda: sample(pf.pin("head", [1, 1], [[0, 0, 0], [0, 0, 1]])),
         "rows 2 and 5 contradict each other: head, frame 1, z = 0 and 1",
     ),
-    (lambda: sample(method="projflo"), "sample: method is one of projflow, gmd, gmd_keyframes, not 'projflo'"),
+    (
+        lambda: sample(method="projflo"),
+        "sample: method is one of projflow, gmd, gmd_keyframes, not 'projflo'",
+    ),
     (lambda: sample("left_wrist"), "sample: wish is made by pin and its neighbours, not a str"),
     (lambda: sample(steps=0), "sample: steps is a whole number of at least 1, not 0"),
     (lambda: sample(steps=2.5), "sample: steps is a whole number of at least 1, not 2.5"),
