@@ -5,8 +5,8 @@ r"""The exact solve of ProjFlow eq. 7, fast enough to drag.
 The metric couples joints, never frames or axes: :math:`R^{-1} = I_N \otimes R_J^{-1} \otimes I_3`.
 So :math:`S = A R^{-1} A^\top + \Sigma` falls apart into small blocks of rows that share a frame and
 an axis. Blocks are found once and inverted once; a later projection is two sparse products, a
-small matrix for each block and one 22 x 22 product for each frame. Where :math:`\Sigma` changes,
-only the blocks are inverted anew.
+small matrix for each block and one product with :math:`R_J^{-1} \otimes I_3` for each frame. Where
+:math:`\Sigma` changes, only the blocks are eliminated anew, all of them at once.
 """
 
 from __future__ import annotations
@@ -102,21 +102,32 @@ class Projector:
         self.solves = solves_needed(self.condition, inner)
         self.pinned, exact = pinned_coordinates(rows, device)
         self.exact = torch.as_tensor(exact, device=device)
-        self.kept = torch.as_tensor(self.keep, device=device)
         self.pins = torch.as_tensor(rows.y[exact], dtype=dtype, device=device)
-        rows = Rows(rows.A[self.keep], rows.y[self.keep], rows.variance[self.keep])
+        # Block by block, so that the residual of a block is a slice and needs no gathering.
+        groups = blocks_of_rows(rows.A[self.keep])
+        order = np.concatenate([self.keep[:0], *(self.keep[index.T.ravel()] for index in groups)])
+        rows = Rows(rows.A[order], rows.y[order], rows.variance[order])
+        self.order = torch.as_tensor(order, device=device)
         self.frames = rows.A.shape[1] // (N_JOINTS * 3)
         self.A = SparseMap(rows.A, inner, device)
-        self.back = SparseMap(rows.A.T.tocsr()[joints_last(self.frames)], inner, device)
-        self.covariance = torch.as_tensor(covariance, dtype=inner, device=device)
+        # Of a frame, only the coordinates that some row reads are ever pulled.
+        pulled = np.unique(rows.A.indices % (N_JOINTS * 3))
+        columns = np.arange(self.frames)[:, None] * N_JOINTS * 3 + pulled
+        self.back = SparseMap(rows.A.T.tocsr()[columns.ravel()], inner, device)
+        spread = np.kron(covariance, np.eye(3))[pulled]
+        self.covariance = torch.as_tensor(spread, dtype=inner, device=device)
         self.y = torch.as_tensor(rows.y, dtype=inner, device=device)
         self.noise = torch.as_tensor(rows.variance, dtype=inner, device=device)
         self.hard = torch.as_tensor(rows.variance == 0, device=device)
         self.firm = math.sqrt(torch.finfo(inner).eps)
-        observed = observed_covariance(rows.A, covariance)
-        self.blocks = [
-            Block(observed, rows.variance, index, inner, device) for index in blocks_of_rows(rows.A)
-        ]
+        combined = (rows.variance == 0) & ~is_coordinate(rows.A)
+        self.refines = self.condition > WELL_CONDITIONED or bool(combined.any())
+        observed, first = observed_covariance(rows.A, covariance), 0
+        self.blocks = []
+        for index in groups:
+            own = slice(first, first + index.size)
+            self.blocks.append(Block(observed, rows.variance, own, len(index), inner, device))
+            first += index.size
 
     def project(self, x1_hat: torch.Tensor, variance: torch.Tensor | None = None) -> torch.Tensor:
         """Move a motion, or a batch, the shortest way onto the rows.
@@ -140,20 +151,21 @@ class Projector:
         check_batch(self.y, len(x), "targets")
         if variance is not None:
             variance = check_variance(variance, self.given, len(x)).to(self.y)
-            variance = torch.where(self.hard, 0.0, variance[..., self.kept]).expand(len(x), -1)
-        inverses = [block.inverse_for(variance) for block in self.blocks]
+            variance = torch.where(self.hard, 0.0, variance.index_select(-1, self.order))
+            variance = variance.expand(len(x), -1)
         noise = self.noise if variance is None else torch.where(variance < torch.inf, variance, 0.0)
-        z = self.solve(self.y - self.A(x), inverses)
+        z = self.solve(self.y - self.A(x), variance)
         x = x + self.spread(z)
-        # Iterative refinement: what rounding left over of S z = y - A x1_hat, removed.
-        for _ in range(self.solves - 1):
-            more = self.solve(self.y - self.A(x) - noise * z, inverses)
+        # Iterative refinement: what rounding left over of S z = y - A x1_hat, removed. Where hard
+        # rows are single coordinates and well conditioned there is no need: they are set below.
+        for _ in range(self.solves - 1 if self.refines else 0):
+            more = self.solve(self.y - self.A(x) - noise * z, variance)
             x, z = x + self.spread(more), z + more
         if variance is not None and not holds(variance + self.hard > self.firm):
             check_solved((self.y - self.A(x) - noise * z) * (variance < torch.inf), self.firm)
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.pins.expand(len(x), -1)
-        return x.to(self.dtype).index_copy(-1, self.pinned, exact).reshape(x1_hat.shape)
+        return x.to(self.dtype).index_copy_(-1, self.pinned, exact).reshape(x1_hat.shape)
 
     def residual(self, x1: torch.Tensor) -> float:
         """Largest ``|A x - y|`` over the hard rows, metres; 0 if there are none.
@@ -167,18 +179,14 @@ class Projector:
         miss = (self.A(x) - self.y).abs()
         return float(miss[:, self.hard].max()) if self.hard.any() else 0.0
 
-    def solve(self, residual: torch.Tensor, inverses: list[torch.Tensor]) -> torch.Tensor:
+    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
         r"""Solve :math:`(A R^{-1} A^\top + \Sigma) z = r`, block by block, for ``(batch, m)``."""
-        z = torch.zeros_like(residual)
-        for block, inverse in zip(self.blocks, inverses, strict=True):
-            part = (inverse * residual[:, block.index].unsqueeze(-2)).sum(-1)
-            z = z.index_copy(1, block.index.flatten(), part.flatten(1))
-        return z
+        return torch.cat([residual[:, :0], *(b.solve(residual, variance) for b in self.blocks)], 1)
 
     def spread(self, z: torch.Tensor) -> torch.Tensor:
         r"""Apply :math:`R^{-1} A^\top` to ``(batch, m)``: put it on the joints, let it spread."""
-        pulled = self.back(z).view(len(z), self.frames, 3, N_JOINTS)
-        return (pulled @ self.covariance).mT.flatten(1)
+        pulled = self.back(z).view(len(z), self.frames, len(self.covariance))
+        return (pulled @ self.covariance).flatten(1)
 
     def aimed_at(self, y: ArrayLike | torch.Tensor) -> Projector:
         """The same rows with other targets, one set for each motion of a batch.
@@ -197,7 +205,8 @@ class Projector:
             raise ValueError("Projector: redundant rows cannot be aimed elsewhere")
         targets = as_targets(y, self.given).to(self.y)
         other = copy(self)
-        other.y, other.pins = targets, targets[..., self.exact].to(self.dtype)
+        other.y = targets.index_select(-1, self.order)
+        other.pins = targets[..., self.exact].to(self.dtype)
         return other
 
 
@@ -222,18 +231,14 @@ def solves_needed(condition: float, dtype: torch.dtype) -> int:
     return max(2, math.ceil(math.log(precision) / math.log(precision * condition**2)))
 
 
-def joints_last(frames: int) -> NDArray:
-    """Coordinates of a motion in the order (frame, axis, joint), in which the metric is a block."""
-    return np.arange(frames * N_JOINTS * 3).reshape(frames, N_JOINTS, 3).swapaxes(1, 2).ravel()
-
-
 class Block:
     """Blocks of equal size, each coupling the rows of one frame and axis.
 
     Args:
         observed: ``(m, m)``, the matrix A R⁻¹ Aᵀ.
         variance: ``(m,)`` of the rows.
-        index: ``(blocks, size)`` the rows of each block.
+        own: the rows of these blocks: the first row of every block, then the second of every one.
+        blocks: how many there are.
         dtype: of the residuals that come later.
         device: where they live.
     """
@@ -242,53 +247,76 @@ class Block:
         self,
         observed: sparse.csr_matrix,
         variance: NDArray,
-        index: NDArray,
+        own: slice,
+        blocks: int,
         dtype: torch.dtype,
         device: str | torch.device,
     ) -> None:
+        index = np.arange(own.start, own.stop).reshape(-1, blocks).T
         dense = dense_blocks(observed, index)
         inverse = np.linalg.inv(dense + variance[index][..., None] * np.eye(index.shape[1]))
-        self.index = torch.as_tensor(index, device=device)
-        self.dense = torch.as_tensor(dense, dtype=dtype, device=device)
+        self.own, self.shape = own, (index.shape[1], blocks)
+        rows_first = np.moveaxis(dense, 0, -1)
+        self.dense = torch.tensor(rows_first, dtype=dtype, device=device)
         self.inverse = torch.as_tensor(inverse, dtype=dtype, device=device)
 
-    def inverse_for(self, variance: torch.Tensor | None) -> torch.Tensor:
-        """Inverse of every block, ``(blocks, size, size)``, or one set for each motion.
+    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
+        """Solve every block for ``(batch, m)`` residuals, ``(batch, own rows)``.
 
         Args:
-            variance: ``(batch, m)``, or None for that of the rows.
+            residual: ``(batch, m)``.
+            variance: ``(batch, m)``, infinite where a row is left out; None for that of the rows.
         """
+        batch = len(residual)
+        r = residual[:, self.own].unflatten(1, self.shape)
         if variance is None:
-            return self.inverse
-        v = variance[:, self.index]
-        active = torch.isfinite(v)
-        # A row without information is cut out: it neither couples to the others nor acts.
-        mask = active[..., :, None] & active[..., None, :]
-        S = self.dense * mask + torch.diag_embed(torch.where(active, v, 1.0))
-        return invert(S) * mask
+            r = r.permute(2, 1, 0)
+            # For a single motion torch's product of matrices pays a call for each block.
+            z = (self.inverse * r.mT).sum(2, keepdim=True) if batch == 1 else self.inverse @ r
+            return z.permute(2, 1, 0).flatten(1)
+        # Blocks of all motions as one long dimension: a product of long rows is a fast one.
+        v = variance[:, self.own].unflatten(1, self.shape).movedim(1, 0).flatten(1)
+        C = self.dense.unsqueeze(2).expand(-1, -1, batch, -1).flatten(2)
+        z = eliminate(C, v, r.movedim(1, 0).flatten(1))
+        return z.unflatten(1, (batch, -1)).movedim(0, 1).flatten(1)
 
 
 LARGEST_IN_LOCKSTEP = 12
+"""Rows of a block up to which blocks are eliminated together; more are worth a call of LAPACK."""
 
 
-def invert(S: torch.Tensor) -> torch.Tensor:
-    """Invert positive definite matrices ``(..., n, n)``.
+def eliminate(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -> torch.Tensor:
+    r"""Solve :math:`(C + \operatorname{diag} \sigma^2)\, z = r` for many small C at once.
 
-    A projection has hundreds of small ones, and a call of LAPACK for each costs more than its
-    arithmetic. So small ones are eliminated (Gauss and Jordan) all at once, column by column;
-    being positive definite, they need no pivoting.
+    Row 0 is used to explain what it can of the others; what remains is the same problem with one
+    row less. So a projection of hundreds of blocks takes as many steps as one block has rows,
+    instead of a call of LAPACK for each. Being positive definite, C needs no pivoting. A row of
+    infinite variance explains nothing and gets z = 0, by the rules of arithmetic.
+
+    Args:
+        C: ``(n, n, ...)`` positive semidefinite.
+        variance: ``(n, ...)``, 0 to infinity.
+        r: ``(n, ...)``.
     """
-    n = S.shape[-1]
-    if n > LARGEST_IN_LOCKSTEP:
-        return torch.linalg.inv(S)
-    inverse = torch.eye(n, dtype=S.dtype, device=S.device).expand_as(S)
-    for k in range(n):
-        pivot = S[..., k : k + 1, k : k + 1]
-        row, row_inverse = S[..., k : k + 1, :] / pivot, inverse[..., k : k + 1, :] / pivot
-        # Every row loses its multiple of row k; row k itself is left with its scaled self.
-        factor = S[..., :, k : k + 1] - torch.eye(n, dtype=S.dtype, device=S.device)[:, k : k + 1]
-        S, inverse = S - factor * row, inverse - factor * row_inverse
-    return inverse
+    if len(C) > LARGEST_IN_LOCKSTEP:
+        return solve_one_by_one(C, variance, r)
+    pivot = C[0, 0] + variance[0]
+    if len(C) == 1:
+        return r / pivot
+    share = C[1:, 0] / pivot
+    C_rest = torch.addcmul(C[1:, 1:], share[:, None], C[0, 1:], value=-1)
+    rest = eliminate(C_rest, variance[1:], torch.addcmul(r[1:], share, r[0], value=-1))
+    first = (r[0] - (C[0, 1:] * rest).sum(0)) / pivot
+    return torch.cat([first[None], rest])
+
+
+def solve_one_by_one(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -> torch.Tensor:
+    """The same for large blocks, by LAPACK; rows of infinite variance are cut out."""
+    C, variance, r = C.movedim((0, 1), (-2, -1)), variance.movedim(0, -1), r.movedim(0, -1)
+    active = torch.isfinite(variance)
+    mask = active[..., :, None] & active[..., None, :]
+    S = C * mask + torch.diag_embed(torch.where(active, variance, 1.0))
+    return (torch.linalg.solve(S, r) * active).movedim(-1, 0)
 
 
 class SparseMap:
@@ -303,13 +331,16 @@ class SparseMap:
     ) -> None:
         entries = sparse.coo_matrix(matrix)
         self.shape = entries.shape
+        self.one_each = np.array_equal(entries.row, np.arange(entries.shape[0]))
         self.row = torch.as_tensor(entries.row, device=device).long()
         self.column = torch.as_tensor(entries.col, device=device).long()
         self.value = torch.as_tensor(entries.data, dtype=dtype, device=device)
 
     def __call__(self, x: torch.Tensor) -> torch.Tensor:
         """Return ``matrix @ x`` for every vector of the batch ``(batch, columns)``."""
-        products = x[:, self.column] * self.value
+        products = x.index_select(1, self.column) * self.value  # x[:, column] is 5 times slower
+        if self.one_each:
+            return products
         return x.new_zeros(len(x), self.shape[0]).index_add(1, self.row, products)
 
 

@@ -50,9 +50,13 @@ def blocks_of_rows(A: sparse.csr_matrix) -> list[NDArray]:
 
 def metric_times_rows(A: sparse.csr_matrix, covariance: NDArray) -> sparse.csr_matrix:
     r""":math:`R^{-1} A^\top`, ``(d, m)``: how every coordinate moves when one row is pulled."""
-    frames = A.shape[1] // (N_JOINTS * 3)
-    spread = sparse.kron(sparse.eye(frames), sparse.kron(covariance, sparse.eye(3)), format="csr")
-    return (spread @ A.T).tocsr()
+    entries = A.tocoo()
+    joint = entries.col // 3 % N_JOINTS
+    # An entry pulls all joints of its frame, along its axis.
+    moved = (entries.col - 3 * joint)[:, None] + 3 * np.arange(N_JOINTS)
+    size = entries.data[:, None] * covariance[joint]
+    pulled = np.broadcast_to(entries.row[:, None], moved.shape)
+    return sparse.csr_matrix((size.ravel(), (moved.ravel(), pulled.ravel())), A.shape[::-1])
 
 
 def observed_covariance(A: sparse.csr_matrix, covariance: NDArray) -> sparse.csr_matrix:
