@@ -153,18 +153,23 @@ def drawn_with(
     return Clips(positions, captions, done, parameters)
 
 
+def is_whole(number: object) -> bool:
+    """Whether it is a whole number; True and False are none."""
+    return isinstance(number, int | np.integer) and not isinstance(number, bool)
+
+
 def check_seed(where: str, seed: int) -> int:
     """Refuse seeds that belong to the held-out clips, or that are none."""
-    if not isinstance(seed, int | np.integer) or not 0 <= seed < 2**63:
+    if not is_whole(seed) or not 0 <= seed < 2**63:
         raise ValueError(f"{where}: seed is a whole number from 0 to 2^63 - 1, not {seed!r}")
     return int(seed)
 
 
 def check(n: int, frames: int, actions: Sequence[str] | None) -> list[str]:
     """Refuse what cannot be made; return the names of the actions."""
-    if not isinstance(n, int | np.integer) or n < 1:
+    if not is_whole(n) or n < 1:
         raise ValueError(f"make_clips: n is a whole number of at least 1, not {n!r}")
-    if not isinstance(frames, int | np.integer) or not SHORTEST <= frames <= LONGEST:
+    if not is_whole(frames) or not SHORTEST <= frames <= LONGEST:
         raise ValueError(f"make_clips: frames is {SHORTEST} to {LONGEST}, not {frames!r}")
     names = (
         list(ACTIONS)

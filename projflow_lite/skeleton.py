@@ -189,13 +189,22 @@ def bone_lengths(positions: NDArray) -> NDArray:
 
     Returns:
         ``(..., frames, 21)``, metres, in the order of `EDGES`.
+
+    Raises:
+        ValueError: if they are no positions.
     """
+    positions = check_positions(positions, "bone_lengths")
     parent, child = np.transpose(EDGES)
     return np.linalg.norm(positions[..., child, :] - positions[..., parent, :], axis=-1)
 
 
 def mirror(positions: NDArray) -> NDArray:
-    """Reflect a motion left to right: x changes sign and every joint takes its partner's place."""
+    """Reflect a motion left to right: x changes sign and every joint takes its partner's place.
+
+    Raises:
+        ValueError: if they are no positions.
+    """
+    positions = check_positions(positions, "mirror")
     return positions[..., list(MIRROR), :] * np.array([-1.0, 1.0, 1.0], dtype=positions.dtype)
 
 

@@ -11,7 +11,8 @@ function here is a batched twin of one in ``equations/``, which the tests hold i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, fields
 
 import numpy as np
 import torch
@@ -20,7 +21,7 @@ from scipy import sparse
 
 from projflow_lite.constraints import Rows, coordinate_rows, is_coordinate
 from projflow_lite.equations import influence_weights, marginal_variance
-from projflow_lite.skeleton import N_JOINTS
+from projflow_lite.skeleton import N_JOINTS, shown
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ class GuideSettings:
             is shared out as well as after (eq. 52).
 
     Raises:
-        ValueError: for another form, or bounds that are not 0 < pi_min <= pi_max <= 1.
+        ValueError: for another form, a constant that is no finite number, or one out of range.
     """
 
     l_min: float = 3.0
@@ -54,7 +55,23 @@ class GuideSettings:
 
     def __post_init__(self) -> None:
         if self.form not in ("printed", "released"):
-            raise ValueError(f"guides: form is 'printed' or 'released', not {self.form!r}")
+            raise ValueError(f"guides: form is 'printed' or 'released', not {shown(self.form)}")
+        for field in fields(self):
+            value = getattr(self, field.name)
+            number = isinstance(value, int | float) and not isinstance(value, bool)
+            if field.name != "form" and not (number and math.isfinite(value)):
+                raise ValueError(f"guides: {field.name} is a finite number, not {shown(value)}")
+        if not 0 <= self.l_min <= self.l_max:
+            raise ValueError(
+                f"guides: radii are 0 <= l_min <= l_max, not {self.l_min} and {self.l_max}"
+            )
+        if not 0 <= self.tau_min <= 1:
+            raise ValueError(f"guides: tau_min is a share of 0 to 1, not {self.tau_min}")
+        if self.c0 < 0 or self.lambda_s < 0 or self.p <= 0:
+            raise ValueError(
+                "guides: c0 and lambda_s are at least 0 and p above, "
+                f"not {self.c0}, {self.lambda_s} and {self.p}"
+            )
         if not 0 < self.pi_min <= self.pi_max <= 1:
             raise ValueError(
                 "guides: trust is bounded by 0 < pi_min <= pi_max <= 1, "

@@ -13,6 +13,7 @@ import torch
 
 from projflow_lite.prior.model import Text
 from projflow_lite.samplers.step import ProjectionStep
+from projflow_lite.skeleton import shown
 
 Velocity = Callable[[torch.Tensor, float, Text], torch.Tensor]
 
@@ -85,12 +86,14 @@ def projflow(
         ``(batch, frames, 22, 3)`` metres; its last projection is not followed by anything.
 
     Raises:
-        ValueError: for another `noise`, or an `eta` outside 0..1.
+        ValueError: for another `noise`, an `eta` outside 0..1, or a callback that is no function.
 
     Source: ProjFlow eq. 5-10 and Table 5.
     """
     if noise not in ("original", "implied"):
-        raise ValueError(f"projflow: noise is 'original' or 'implied', not '{noise}'")
+        raise ValueError(f"projflow: noise is 'original' or 'implied', not {shown(noise)}")
+    if callback is not None and not callable(callback):
+        raise ValueError(f"projflow: callback is a function of a Step, not {shown(callback)}")
     x_t = x0
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)
@@ -117,8 +120,10 @@ def fresh_share(eta: Callable[[float], float] | float | str, t: float, t_next: f
     if eta == "ddpm":
         return 1.0 - (t * (1 - t_next) / ((1 - t) * t_next)) ** 2
     share = eta(t_next) if callable(eta) else eta
-    if not isinstance(share, int | float):
-        raise ValueError(f"projflow: eta is 'paper', 'ddpm', a number or a function, not {eta!r}")
+    if isinstance(share, bool) or not isinstance(share, int | float):
+        raise ValueError(
+            f"projflow: eta is 'paper', 'ddpm', a number or a function, not {shown(eta)}"
+        )
     if not 0 <= share <= 1:
         raise ValueError(f"projflow: eta is a share of 0 to 1, not {share}")
     return share
