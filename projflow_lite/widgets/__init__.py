@@ -3,7 +3,18 @@
 from projflow_lite.widgets.board import Board
 from projflow_lite.widgets.metric_explorer import MetricExplorer
 from projflow_lite.widgets.path_pad import BOUNDS, PLANES, PathPad
+from projflow_lite.widgets.sampler_scope import SamplerScope
 from projflow_lite.widgets.studio import WishStudio
 from projflow_lite.widgets.viewer import Viewer, view
 
-__all__ = ["BOUNDS", "PLANES", "Board", "MetricExplorer", "PathPad", "Viewer", "WishStudio", "view"]
+__all__ = [
+    "BOUNDS",
+    "PLANES",
+    "Board",
+    "MetricExplorer",
+    "PathPad",
+    "SamplerScope",
+    "Viewer",
+    "WishStudio",
+    "view",
+]
