@@ -1,6 +1,7 @@
 """What a person touches: the motion viewer, the path pad, and the studio that joins them."""
 
 from projflow_lite.widgets.board import Board
+from projflow_lite.widgets.equation_card import EquationCard
 from projflow_lite.widgets.metric_explorer import MetricExplorer
 from projflow_lite.widgets.path_pad import BOUNDS, PLANES, PathPad
 from projflow_lite.widgets.sampler_scope import SamplerScope
@@ -11,6 +12,7 @@ __all__ = [
     "BOUNDS",
     "PLANES",
     "Board",
+    "EquationCard",
     "MetricExplorer",
     "PathPad",
     "SamplerScope",

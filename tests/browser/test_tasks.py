@@ -32,8 +32,9 @@ def test_every_erratum_has_its_card_and_trust_has_its_sliders(jupyter_lab):
         NOTEBOOKS / "06_where_print_and_derivation_part.ipynb", width=1100, height=1000
     )
     lab.run_all(seconds=150)
-    choose(lab, "Equation", "51: Weight of a joint")
-    lab.wait_for("'0.253' in card.value")
+    choose(lab, "equation", "52 · " + lab.ask("card.records['ProjFlow', '52'].title"))
+    choose(lab, "equation", "51 · Weight of a joint")
+    lab.wait_for("'0.253' in card.erratum.value")
     lab.screenshot("print_card", top=".jp-OutputArea")
     assert lab.ask("float(panel.data[1].y[0])") == 1.0
     press(lab, "joints", "ArrowRight", 7)
