@@ -1,5 +1,5 @@
-// The viewer: its controls, its clock and its picture. Needs theme.js, camera.js, body.js and
-// markers.js before it in the same module. Everything it shows is in the model's traits, so the
+// The viewer: its controls, its clock and its picture. Needs theme.js, camera.js, body.js,
+// markers.js and viewer_grab.js before it in the same module. Everything it shows is in the model's traits, so the
 // same module runs in a notebook with a kernel and in a page with stored state.
 
 const ICONS = {
@@ -370,5 +370,6 @@ function drawScene(view, time) {
   const named = order.map(({ pose, body }) => ({ pose, name: body > 0 ? scene.names[body] : "" }));
   drawNames(ctx, camera, palette, named.filter(({ name }) => name).reverse());
   drawMarkersAt(ctx, camera, palette, scene.markers, frame, poses[0]);
+  drawHeld(view, poses[0]);
   drawAxes(ctx, camera, palette);
 }

@@ -47,7 +47,10 @@ class Viewer(anywidget.AnyWidget):
     and ``camera`` (a dict of yaw, pitch, distance, target, orthographic; empty: fit the motion).
     """
 
-    _esm = module("theme.js", "camera.js", "body.js", "markers.js", "viewer.js", "viewer_input.js")
+    _esm = module(
+        "theme.js", "camera.js", "body.js", "markers.js", "viewer_grab.js", "viewer.js",
+        "viewer_input.js",
+    )  # fmt: skip
     _css = module("widgets.css")
 
     data = float_bytes()
@@ -66,6 +69,9 @@ class Viewer(anywidget.AnyWidget):
     trail_joints = traitlets.List(traitlets.Int()).tag(sync=True)
     camera = traitlets.Dict().tag(sync=True)
     height = traitlets.Int(420).tag(sync=True)
+    # Whether joints can be grabbed; and what was: {"joint", "frame", "at", "done", "count"}.
+    grab = traitlets.Bool(False).tag(sync=True)
+    pull: traitlets.Dict = traitlets.Dict().tag(sync=True)
 
     def __init__(
         self,

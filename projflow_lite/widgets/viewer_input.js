@@ -1,6 +1,7 @@
 // How a person moves the viewer: mouse, touch, wheel and keys.
 
-/** Drag turns, shift-drag (or the right button) shifts, wheel zooms, double-click resets. */
+/** Drag turns, shift-drag (or the right button) shifts, wheel zooms, double-click resets. Where
+ * joints may be grabbed, a drag that begins on one moves it. */
 function listenToPointer(view) {
   const { canvas } = view.ui;
   let last = null;
@@ -16,20 +17,27 @@ function listenToPointer(view) {
       last = [event.clientX, event.clientY];
       armed = true;
       canvas.setPointerCapture(event.pointerId);
+      const held = event.shiftKey || event.button ? null : jointAt(view, event);
+      if (held) takeHold(view, held);
     },
     pointermove(event) {
       armed ||= Boolean(event.movementX || event.movementY);
-      if (!last) return;
+      if (!last) {
+        canvas.style.cursor = jointAt(view, event) ? "grab" : "";
+        return;
+      }
       const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]];
       last = [event.clientX, event.clientY];
       if (!dx && !dy) return;
+      if (view.held) return moveHeld(view, dx, dy);
       if (event.shiftKey || event.buttons & 2) view.camera.pan(dx, dy);
       else view.camera.orbit(dx, dy);
       view.moved = true;
       changed();
     },
     pointerup() {
-      if (last && view.moved) view.saveCamera();
+      if (view.held) letGo(view);
+      else if (last && view.moved) view.saveCamera();
       last = null;
       view.moved = false;
     },

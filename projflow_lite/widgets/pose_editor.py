@@ -1,0 +1,179 @@
+"""The pose editor: grab a joint at any frame, drag it, and the motion follows."""
+
+from __future__ import annotations
+
+import asyncio
+import html
+import time
+from collections.abc import Sequence
+from functools import reduce
+from operator import and_
+from typing import Any
+
+import ipywidgets as widgets
+import numpy as np
+
+from projflow_lite.constraints import Wish, pin
+from projflow_lite.motion import Motion
+from projflow_lite.samplers import Velocity, sample
+from projflow_lite.skeleton import JOINTS
+from projflow_lite.widgets.studio import SETTLE, report
+from projflow_lite.widgets.viewer import Viewer
+
+ASK = "Grab a joint in the picture and drag it; it becomes a pin in the frame that is shown."
+
+
+class PoseEditor(widgets.VBox):
+    """A motion whose joints can be grabbed. What was dragged stays where it was put, exactly.
+
+    While the hand moves, a few steps of the sampler answer; once it lets go, all of them do. The
+    noise stays the same, so that only the pins change the motion. Without a mouse: choose the joint
+    and the frame, and write its place.
+
+    Args:
+        prior: what to sample from, see `sample`.
+        prompt: what the motion should be.
+        frames: length of the motion.
+        wish: what must hold besides the pins, or None.
+        steps: of the sampler; or flow times.
+        drag_steps: the same while a joint is dragged.
+        seed: of the noise.
+        height: of the picture, pixels.
+        options: further arguments of `sample`.
+
+    Raises:
+        ValueError: as `sample` does.
+
+    ``.pins`` is ``{(joint, frame): (x, y, z)}`` in metres, ``.motion`` the motion, ``.runs`` how
+    often the sampler ran, ``.error`` what went wrong last.
+    """
+
+    def __init__(
+        self,
+        prior: Velocity,
+        prompt: str | None = None,
+        frames: int = 60,
+        wish: Wish | None = None,
+        steps: int | Sequence[float] = 25,
+        drag_steps: int = 8,
+        seed: int = 0,
+        height: int = 460,
+        **options: Any,
+    ) -> None:
+        self.prior, self.wish, self.steps, self.drag_steps = prior, wish, steps, drag_steps
+        self.options = {"prompt": prompt, "frames": frames, "seed": seed} | options
+        self.pins: dict[tuple[int, int], tuple[float, ...]] = {}
+        self.runs = 0
+        self.error: Exception | None = None
+        self._waiting: asyncio.TimerHandle | None = None
+        self._count = 0
+        self.motion = self._sample(steps)
+        self.viewer = Viewer(self.motion, grab=True, playing=False, height=height)
+        self._make_controls()
+        super().__init__([self._controls(), self.viewer, self.status])
+        self._say(ASK)
+        self._show_place()
+        self._observe()
+
+    def _make_controls(self) -> None:
+        self.joint = widgets.Dropdown(
+            options=[(name.replace("_", " "), k) for k, name in enumerate(JOINTS)],
+            value=JOINTS.index("left_wrist"), description="joint",
+            layout={"width": "200px"}, style={"description_width": "40px"},
+        )  # fmt: skip
+        self.place = [
+            widgets.FloatText(
+                description=axis, step=0.05, layout={"width": "110px"},
+                style={"description_width": "14px"},
+            )
+            for axis in "xyz"
+        ]  # fmt: skip
+        self.undo = widgets.Button(description="Undo", tooltip="Take the last pin away")
+        self.clear = widgets.Button(description="Clear", tooltip="Take all pins away")
+        for button in (self.undo, self.clear):
+            button.layout.width = "75px"
+        self.status = widgets.HTML()
+
+    def _controls(self) -> widgets.Widget:
+        wrap = widgets.Layout(flex_flow="row wrap", width="100%", grid_gap="2px 8px")
+        return widgets.Box([self.joint, *self.place, self.undo, self.clear], layout=wrap)
+
+    def _observe(self) -> None:
+        self.viewer.observe(self._pulled, "pull")
+        self.viewer.observe(self._show_place, "frame")
+        self.joint.observe(self._show_place, "value")
+        for field in self.place:
+            field.observe(self._written, "value")
+        self.undo.on_click(lambda button: self._take_away(1))
+        self.clear.on_click(lambda button: self._take_away(len(self.pins)))
+
+    def _pulled(self, change: dict[str, Any]) -> None:
+        """A joint was dragged: remember where to, and answer once no newer message waits."""
+        pull = change["new"]
+        if not pull:
+            return
+        key = pull["joint"], pull["frame"]
+        self.pins.pop(key, None)  # the last one moved is the first one to be undone
+        self.pins[key] = (*map(float, pull["at"]),)
+        self.joint.value = pull["joint"]
+        self._soon(self.steps if pull["done"] else self.drag_steps)
+
+    def _written(self, change: dict[str, Any]) -> None:
+        """A coordinate was written."""
+        if self._showing:
+            return
+        key = self.joint.value, self.viewer.frame
+        self.pins.pop(key, None)
+        self.pins[key] = (*(float(field.value) for field in self.place),)
+        self._soon(self.steps)
+
+    def _take_away(self, number: int) -> None:
+        """Take away the pins that were made last."""
+        for key in list(self.pins)[::-1][:number]:
+            del self.pins[key]
+        self._soon(self.steps)
+
+    def _soon(self, steps: int | Sequence[float]) -> None:
+        """Run once things have settled: what was dragged while we were busy makes one motion."""
+        try:
+            loop = asyncio.get_running_loop()
+        except RuntimeError:  # a plain script or a test: no loop to wait in
+            self.run(steps)
+            return
+        if self._waiting is not None:
+            self._waiting.cancel()
+        self._waiting = loop.call_later(SETTLE / 5, self.run, steps)
+
+    def run(self, steps: int | Sequence[float] | None = None) -> None:
+        """Make the motion anew, and show it or say what is wrong."""
+        start = time.perf_counter()
+        try:
+            self.motion, self.error = self._sample(steps or self.steps), None
+        except Exception as error:  # anything at all: a traceback would vanish in a log
+            self.error = error
+            self._say(f"error: {error}", "pf-bad")
+            return
+        self.runs += 1
+        self.viewer.show(self.motion)
+        self._show_place()
+        seconds = time.perf_counter() - start
+        count = f"{len(self.pins)} pin{'s' * (len(self.pins) != 1)}"
+        self._say(f"{count} · {report(self.motion, seconds)}" if self.pins else ASK)
+
+    def _sample(self, steps: int | Sequence[float]) -> Motion:
+        wishes = [pin(joint, frame, at) for (joint, frame), at in self.pins.items()]
+        if self.wish is not None:
+            wishes.append(self.wish)
+        wish = reduce(and_, wishes) if wishes else None
+        return sample(self.prior, wish, steps=steps, **self.options)
+
+    def _show_place(self, change: dict[str, Any] | None = None) -> None:
+        """Write where the chosen joint is in the frame that is shown."""
+        self._showing = True
+        at = np.asarray(self.motion.positions)[self.viewer.frame, self.joint.value]
+        for field, value in zip(self.place, at, strict=True):
+            field.value = round(float(value), 3)
+        self._showing = False
+
+    def _say(self, text: str, kind: str = "") -> None:
+        self.status.value = f'<div class="pf-status {kind}" role="status">{html.escape(text)}</div>'

@@ -1,0 +1,93 @@
+"""The pose editor without a page: what is pulled is pinned, exactly, and can be taken back."""
+
+import numpy as np
+import pytest
+import torch
+
+import projflow_lite as pf
+from projflow_lite.skeleton import JOINTS
+from projflow_lite.widgets import PoseEditor
+
+WRIST, HEAD = JOINTS.index("left_wrist"), JOINTS.index("head")
+
+
+def still(x_t, t, text):
+    return (torch.tensor([0.0, 1.0, 0.0]) - x_t) / (1 - t)
+
+
+@pytest.fixture
+def editor():
+    return PoseEditor(still, frames=24, steps=4, drag_steps=2)
+
+
+def pull(editor, joint, frame, at, done=True):
+    count = editor.viewer.pull.get("count", 0) + 1
+    editor.viewer.pull = {"joint": joint, "frame": frame, "at": at, "done": done, "count": count}
+
+
+def test_what_is_pulled_becomes_an_exact_pin(editor):
+    pull(editor, WRIST, 7, [0.5, 1.25, 0.25])
+    assert editor.pins == {(WRIST, 7): (0.5, 1.25, 0.25)}
+    np.testing.assert_array_equal(editor.motion.positions[7, WRIST], np.float32([0.5, 1.25, 0.25]))
+    assert editor.motion.residual < 1e-6
+    assert len(editor.viewer.markers) > 0
+    assert "1 pin " in editor.status.value
+
+
+def test_pulling_on_moves_the_same_pin(editor):
+    for x in (0.1, 0.2, 0.3):
+        pull(editor, WRIST, 7, [x, 1.0, 0.0], done=False)
+    pull(editor, HEAD, 3, [0.0, 1.75, 0.0])
+    assert list(editor.pins) == [(WRIST, 7), (HEAD, 3)]
+    assert editor.pins[WRIST, 7][0] == 0.3
+
+
+def test_a_drag_takes_few_steps_and_letting_go_all_of_them(editor, monkeypatch):
+    asked = []
+    plain = PoseEditor._sample
+    monkeypatch.setattr(
+        PoseEditor, "_sample", lambda self, steps: asked.append(steps) or plain(self, steps)
+    )
+    pull(editor, WRIST, 7, [0.5, 1.0, 0.0], done=False)
+    pull(editor, WRIST, 7, [0.5, 1.0, 0.0], done=True)
+    assert asked == [2, 4]
+
+
+def test_undo_takes_the_last_pin_and_clear_all(editor):
+    free = editor.motion.positions
+    for joint in (WRIST, HEAD, 0):
+        pull(editor, joint, 5, [0.0, 1.5, 0.1])
+    pull(editor, WRIST, 5, [0.0, 1.5, 0.2])
+    editor.undo.click()
+    assert list(editor.pins) == [(HEAD, 5), (0, 5)]
+    editor.clear.click()
+    assert editor.pins == {}
+    np.testing.assert_array_equal(editor.motion.positions, free)
+
+
+def test_without_a_mouse_a_place_is_written(editor):
+    editor.viewer.frame = 9
+    editor.joint.value = HEAD
+    assert editor.runs == 0
+    assert [field.value for field in editor.place] == pytest.approx([0, 1, 0], abs=1e-3)
+    editor.place[1].value = 1.5
+    assert editor.pins == {(HEAD, 9): pytest.approx((0, 1.5, 0), abs=1e-3)}
+    assert editor.motion.positions[9, HEAD, 1] == pytest.approx(1.5)
+
+
+def test_another_wish_holds_as_well():
+    editor = PoseEditor(still, frames=24, wish=pf.pin("pelvis", 0, [0, 0.9, 0]), steps=3)
+    pull(editor, WRIST, 7, [0.5, 1.0, 0.0])
+    np.testing.assert_allclose(editor.motion.positions[0, 0], [0, 0.9, 0], atol=1e-6)
+    np.testing.assert_allclose(editor.motion.positions[7, WRIST], [0.5, 1, 0], atol=1e-6)
+
+
+def test_what_cannot_be_is_said_and_the_motion_stays():
+    editor = PoseEditor(still, frames=24, wish=pf.pin("pelvis", 0, [0, 0.9, 0]), steps=3)
+    before = editor.motion
+    pull(editor, 0, 0, [0.5, 1.0, 0.0])
+    assert editor.motion is before
+    assert isinstance(editor.error, ValueError)
+    assert "pelvis" in editor.status.value
+    editor.undo.click()
+    assert editor.error is None
