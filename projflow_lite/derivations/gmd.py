@@ -180,7 +180,7 @@ def compromise_where_nothing_is_imputed(random: np.random.Generator) -> float:
 
 @derives("4.2 (c)", "as a step of the motion that pays for distance in projected space", 1e-7)
 def step_paid_for_in_projected_space(random: np.random.Generator) -> float:
-    """Lowest s g.d + |k A d|^2 / (2 variance); the slopes are taken by differences."""
+    """Lowest ``s g.d + |k A d|^2 / (2 variance)``; the slopes are taken by differences."""
     A, k = projection(random)
     x, s, variance = random.normal(size=(N, 1)), 2.0, 0.3
     undo = np.linalg.inv(k * A)

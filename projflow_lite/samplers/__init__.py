@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,8 +15,14 @@ from projflow_lite.constraints import Wish
 from projflow_lite.motion import Motion
 from projflow_lite.prior.model import as_prompts
 from projflow_lite.samplers.adapter import Adapter
+from projflow_lite.samplers.aims import any_rows, exact_pins, exact_rows
+from projflow_lite.samplers.ddnm import ddnm
 from projflow_lite.samplers.diffusion import ancestral
+from projflow_lite.samplers.dno import dno
+from projflow_lite.samplers.dps import dps
 from projflow_lite.samplers.euler import euler
+from projflow_lite.samplers.flowchef import flowchef
+from projflow_lite.samplers.flowdps import flowdps
 from projflow_lite.samplers.gmd import Metres, draw_noise, gmd
 from projflow_lite.samplers.gmd_imputation import Imputation, known_coordinates
 from projflow_lite.samplers.gmd_keyframes import gmd_keyframes
@@ -23,7 +30,11 @@ from projflow_lite.samplers.gmd_obstacles import Avoid, box, circles, union
 from projflow_lite.samplers.goals import Goal, Together, check_pins, keep_speed, on_ground, reach
 from projflow_lite.samplers.guidance import checked, guided
 from projflow_lite.samplers.guides import Guides, GuideSettings
+from projflow_lite.samplers.imputation import imputation
+from projflow_lite.samplers.misfit import Misfit
+from projflow_lite.samplers.pnp_flow import pnp_flow
 from projflow_lite.samplers.projflow import Step, Velocity, projflow
+from projflow_lite.samplers.replacement import replacement
 from projflow_lite.samplers.step import ProjectionStep
 from projflow_lite.skeleton import N_JOINTS, number_array, shown
 
@@ -34,20 +45,29 @@ __all__ = [
     "GuideSettings",
     "Guides",
     "Imputation",
+    "Misfit",
     "ProjectionStep",
     "Step",
     "Together",
     "ancestral",
     "box",
     "circles",
+    "ddnm",
+    "dno",
+    "dps",
     "euler",
+    "flowchef",
+    "flowdps",
     "gmd",
     "gmd_keyframes",
     "guided",
+    "imputation",
     "keep_speed",
     "on_ground",
+    "pnp_flow",
     "projflow",
     "reach",
+    "replacement",
     "sample",
     "union",
 ]
@@ -86,6 +106,14 @@ METHODS = {
     "projflow": Method(projflow, ProjectionStep, takes_goals=False),
     "gmd": Method(gmd, pins_to_impute, takes_goals=True),
     "gmd_keyframes": Method(gmd_keyframes, pins_to_impute, takes_goals=True),
+    "ddnm": Method(ddnm, partial(exact_rows, "ddnm"), takes_goals=False),
+    "replacement": Method(replacement, partial(exact_pins, "replacement"), takes_goals=False),
+    "imputation": Method(imputation, partial(exact_pins, "imputation"), takes_goals=False),
+    "flowdps": Method(flowdps, partial(any_rows, "flowdps"), takes_goals=False),
+    "pnp_flow": Method(pnp_flow, partial(any_rows, "pnp_flow"), takes_goals=False),
+    "flowchef": Method(flowchef, partial(any_rows, "flowchef"), takes_goals=False),
+    "dps": Method(dps, partial(any_rows, "dps"), takes_goals=False),
+    "dno": Method(dno, partial(any_rows, "dno"), takes_goals=False),
 }
 """Methods that obey a wish, by the name that `sample` takes."""
 
@@ -121,7 +149,9 @@ def sample(
         steps: how many sampling steps, see `flow_times`; or their flow times, from 0 to 1.
         seed: the same seed gives the same motion.
         method: a name of `METHODS`: "projflow"; or "gmd" and "gmd_keyframes", which overwrite
-            exact pins, and push.
+            exact pins, and push; or a rival: "ddnm", exact for any hard wish; "replacement" and
+            "imputation", for exact pins; "flowdps", "pnp_flow", "flowchef", "dps" and "dno", which
+            come near to any wish.
         goal: what else to reach, as a function of motions, see `goals`; with or without a wish.
             For the methods of GMD.
         batch: how many motions; None for one, without a batch dimension.

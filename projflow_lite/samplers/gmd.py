@@ -12,7 +12,7 @@ pelvis' x and z of 5 frames of each clip, 25 steps, one seed. The error is the m
 keyframes; the tear is the largest relative change of a bone in a keyframe, on average.
 
 ===============================================  ========  ======
-\                                                 error, m  tear
+\                                                error, m  tear
 ===============================================  ========  ======
 no control                                       0.166     6 %
 imputation alone, until 0.97                     0.153     6 %

@@ -10,7 +10,14 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from projflow_lite.prior import load_prior
-from projflow_lite.studies import contact_sheet, data_card, fewer_steps, noise_reading, posterior
+from projflow_lite.studies import (
+    contact_sheet,
+    control,
+    data_card,
+    fewer_steps,
+    noise_reading,
+    posterior,
+)
 
 
 class Wanted(NamedTuple):
@@ -38,6 +45,16 @@ def run_contact_sheet(wanted: Wanted) -> dict[str, Any]:
     return {"written": [str(path) for path in paths]}
 
 
+def run_control(wanted: Wanted) -> dict[str, Any]:
+    """Which zero-shot method obeys, at which cost? Table 1 and 7 of ProjFlow."""
+    rows = control.run(load_prior(wanted.prior), control.QUICK if wanted.quick else None)
+    print(control.table(rows))
+    pictures = wanted.out / "pictures"
+    pictures.mkdir(parents=True, exist_ok=True)
+    picture = control.figure(rows, pictures / "control.png")
+    return {"picture": str(picture), "rows": rows}
+
+
 def run_noise_reading(wanted: Wanted) -> dict[str, Any]:
     """Which noise should eq. 9 mix, and how much of it should be fresh?"""
     clips, seeds = (24, 2) if wanted.quick else (64, 3)
@@ -63,6 +80,7 @@ def run_data_card(wanted: Wanted) -> dict[str, Any]:
 
 STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
     "contact-sheet": run_contact_sheet,
+    "control": run_control,
     "data-card": run_data_card,
     "fewer-steps": run_fewer_steps,
     "noise-reading": run_noise_reading,

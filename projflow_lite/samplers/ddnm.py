@@ -1,0 +1,61 @@
+r"""DDNM: keep what the wish does not see of a predicted motion, and replace the rest.
+
+.. math:: \hat x_1^* = A^+ y + (I - A^+ A)\, \hat x_1
+
+This is ProjFlow with R = I, :math:`\Sigma = 0`, no guides, the noise that the state implies, and
+none of it fresh. A pinned wrist moves alone: no arm comes along with it in the same step.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Sequence
+
+import torch
+
+from projflow_lite.prior.model import Text
+from projflow_lite.samplers.options import check_callback
+from projflow_lite.samplers.projflow import Step, Velocity, fresh_share
+from projflow_lite.samplers.step import ProjectionStep
+
+
+def ddnm(
+    velocity: Velocity,
+    project: ProjectionStep,
+    x0: torch.Tensor,
+    times: Sequence[float],
+    generator: torch.Generator | None = None,
+    text: Text = None,
+    eta: float | str = 0.0,
+    noise_std: float | torch.Tensor = 1.0,
+    callback: Callable[[Step], None] | None = None,
+) -> torch.Tensor:
+    """Sample motions that obey a linear wish exactly, by null-space projection.
+
+    Args:
+        velocity: the flow, ``velocity(x_t, t, text)`` on ``(batch, frames, 22, 3)``.
+        project: onto exact rows, under the Euclidean metric and without guides.
+        x0: noise to begin with, ``(batch, frames, 22, 3)``, metres.
+        times: flow times from 0 to 1, rising.
+        generator: where fresh noise is drawn from.
+        text: prompts.
+        eta: share of fresh noise, see `projflow`. 0 follows the flow between projections; "ddpm"
+            is diffusion's ancestral sampling between them.
+        noise_std: standard deviation of the flow's noise, metres.
+        callback: called with every `Step`.
+
+    Source: ProjFlow eq. 21, between the steps of a flow instead of a diffusion.
+    """
+    check_callback("ddnm", callback)
+    x_t = x0
+    for t, t_next in itertools.pairwise(times):
+        v = velocity(x_t, t, text)
+        x1_hat, implied = x_t + (1 - t) * v, x_t - t * v
+        x1 = project(x1_hat, t)
+        fresh = noise_std * torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
+        share = fresh_share(eta, t, t_next)
+        noise = (1 - share) ** 0.5 * implied + share**0.5 * fresh
+        if callback:
+            callback(Step(t, t_next, x_t, x1_hat, x1, residual=project.residual(x1)))
+        x_t = t_next * x1 + (1 - t_next) * noise
+    return x_t

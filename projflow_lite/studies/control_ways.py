@@ -1,0 +1,210 @@
+"""The ways to make a motion keep an appointment that the study of control compares."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+
+from data_synth import Clips
+from projflow_lite.constraints import pin
+from projflow_lite.prior.model import Text
+from projflow_lite.samplers import METHODS, GuideSettings, Imputation, euler, flow_times
+from projflow_lite.samplers.projflow import Velocity
+from projflow_lite.skeleton import joint_index
+
+BATCH = 64
+"""Clips that are made at once. They share the frames of their keyframes, not the targets."""
+
+
+class Rival(NamedTuple):
+    """One method with its settings.
+
+    Attributes:
+        name: in tables.
+        method: a name of `projflow_lite.samplers.METHODS`; "" for a sample without a wish.
+        options: what differs from the method's defaults; of ProjFlow also "metric", "guides" and
+            the guides' "c0".
+    """
+
+    name: str
+    method: str
+    options: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def spelled(self) -> str:
+        """Name and settings, for a file's name."""
+        parts = [self.name, *(f"{key}={value}" for key, value in self.options)]
+        return "_".join(parts).replace(", ", "-").replace(" ", "-")
+
+
+FREE = Rival("no wish", "")
+
+RIVALS = (
+    FREE,
+    Rival("projflow", "projflow"),
+    Rival("ddnm", "ddnm"),
+    Rival("replacement", "replacement"),
+    Rival("imputation", "imputation"),
+    Rival("gmd", "gmd"),
+    Rival("flowdps", "flowdps"),
+    Rival("pnp_flow", "pnp_flow"),
+    Rival("flowchef", "flowchef"),
+    Rival("dps", "dps"),
+    Rival("dps, endpoint", "dps", (("through", "endpoint"), ("scale", 0.3))),
+    Rival("dno", "dno"),
+)
+"""Every method that needs no training of its own."""
+
+ABLATIONS = (
+    Rival("euclid", "projflow", (("metric", "euclidean"),)),
+    Rival("no fresh noise", "projflow", (("eta", 0.0),)),
+    Rival("plain masking", "projflow", (("guides", False),)),
+)
+"""ProjFlow without one of its parts, as in its Table 6."""
+
+QUICK_DNO = Rival("dno", "dno", (("iterations", 10), ("solver_steps", 5)))
+
+
+class Task(NamedTuple):
+    """What is asked for: one joint, at some keyframes.
+
+    Attributes:
+        joint: its name.
+        keys: number of keyframes.
+        frames: of the motions.
+    """
+
+    joint: str
+    keys: int
+    frames: int
+
+    def keyframes(self, seed: int) -> NDArray[np.int64]:
+        """Frames of the keyframes, drawn without repetition, rising."""
+        random = np.random.default_rng([seed, self.keys])
+        return np.sort(random.choice(self.frames, self.keys, replace=False))
+
+
+class Made(NamedTuple):
+    """Motions and what was asked of them; both ``(clips, frames, 22, 3)``, metres.
+
+    Attributes:
+        positions: the motions.
+        targets: NaN where nothing was asked for.
+    """
+
+    positions: NDArray
+    targets: NDArray
+
+
+def make(
+    velocity: Velocity,
+    noise_std: float | torch.Tensor,
+    rival: Rival,
+    task: Task,
+    clips: Clips,
+    steps: int,
+    seed: int,
+) -> Made:
+    """A motion for every clip, from its prompt and its own position at the keyframes.
+
+    Keyframes and the noise of the start depend on the seed alone: all rivals have the same.
+
+    Args:
+        velocity: the flow.
+        noise_std: standard deviation of its noise, metres.
+        rival: how.
+        task: what is asked for.
+        clips: where prompts and targets are taken from.
+        steps: of sampling.
+        seed: of keyframes and noise.
+    """
+    joint = joint_index(task.joint, "control")
+    positions, targets = [], np.full(clips.positions.shape, np.nan)
+    for start in range(0, len(clips.captions), BATCH):
+        batch = slice(start, start + BATCH)
+        frames = task.keyframes(10_000 * seed + start)
+        wanted = clips.positions[batch][:, frames, joint]
+        generator = torch.Generator().manual_seed(10_000 * seed + start)
+        x0 = noise_std * torch.randn(clips.positions[batch].shape, generator=generator)
+        texts = clips.captions[batch]
+        with torch.no_grad():
+            x1 = sampled(
+                velocity, noise_std, rival, (task, frames, wanted), x0, steps, generator, texts
+            )
+        positions.append(x1.numpy())
+        targets[batch.start : batch.start + len(x0), frames, joint] = wanted
+    return Made(np.concatenate(positions), targets)
+
+
+def sampled(
+    velocity: Velocity,
+    noise_std: float | torch.Tensor,
+    rival: Rival,
+    wanted: tuple[Task, NDArray, NDArray],
+    x0: torch.Tensor,
+    steps: int,
+    generator: torch.Generator,
+    texts: Text,
+) -> torch.Tensor:
+    """One batch of one rival."""
+    times = flow_times(steps)
+    if not rival.method:
+        return euler(velocity, x0, times, texts)
+    options = {key: value for key, value in rival.options if key not in OF_AIM}
+    return METHODS[rival.method].sampler(
+        velocity, aim(rival, *wanted), x0, times, generator, texts, noise_std=noise_std, **options
+    )
+
+
+OF_AIM = ("metric", "guides", "c0")
+
+
+def aim(rival: Rival, task: Task, frames: NDArray, targets: NDArray) -> Any:
+    """What a method asks in every step, with targets for each motion of a batch.
+
+    Args:
+        rival: the method and its settings.
+        task: the joint and the length of the motions.
+        frames: ``(keys,)`` of the keyframes, rising.
+        targets: ``(clips, keys, 3)``, metres.
+    """
+    options = dict(rival.options)
+    guides = GuideSettings(c0=options["c0"]) if "c0" in options else options.get("guides", True)
+    metric = options.get("metric", "kinematic")
+    one = pin(task.joint, frames, targets[0])
+    asked = METHODS[rival.method].aim(one, task.frames, metric, torch.float32, guides)
+    y = targets.reshape(len(targets), -1)
+    if not isinstance(asked, Imputation):
+        return asked.aimed_at(y)
+    values = asked.values.expand(len(targets), *asked.values.shape).clone()
+    values[:, asked.mask] = torch.as_tensor(y, dtype=values.dtype)  # both by frame, then by axis
+    return Imputation(asked.mask, values)
+
+
+def time_ratio(work: Callable[[], Any], reference: Callable[[], Any], turns: int = 3) -> float:
+    """How many times as long one piece of work takes as another, in turns, each at its best."""
+    seconds = np.empty((turns, 2))
+    for turn in range(turns):
+        for k, function in enumerate((work, reference)):
+            start = time.perf_counter()
+            function()
+            seconds[turn, k] = time.perf_counter() - start
+    best = seconds.min(0)
+    return float(best[0] / best[1])
+
+
+def elsewhere(prior: Any, device: str) -> Velocity:
+    """The prior's velocity computed on another device; everything else stays on the processor."""
+    if device == "cpu":
+        return prior
+    moved = prior.to(device)
+
+    def field(x_t: torch.Tensor, t: float, text: Text = None) -> torch.Tensor:
+        return moved(x_t.to(device), t, text).to("cpu")
+
+    return field
