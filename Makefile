@@ -11,11 +11,11 @@ BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt $(PIP_ARGS)
 NOTEBOOK ?= notebooks/00_start_here.ipynb
 
-.PHONY: lab test check browser hooks pictures clean help
+.PHONY: lab test book check browser hooks pictures clean help
 
 help:
 	@sed -n '1,7s/^# \{0,1\}//p' Makefile
-	@echo "also: make check (ruff and mypy), make hooks (for contributors), make pictures, make clean"
+	@echo "also: make book (the notebooks as a web site), make check (ruff and mypy), make hooks (for contributors), make pictures, make clean"
 
 # JupyterLab refuses to run as root, as in most containers, unless it is told to.
 lab: $(VENV)/.lab
@@ -23,6 +23,11 @@ lab: $(VENV)/.lab
 
 test: $(VENV)/.test browser check
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(ARGS)
+
+# The notebooks as pages that need neither Python nor a network; a second build runs only what changed.
+book: $(VENV)/.book
+	OMP_NUM_THREADS=1 $(BIN)/python -m sphinx -b html --keep-going -j auto -d book/_build/doctrees $(ARGS) book book/_build/html
+	@echo "Open book/_build/html/index.html in a browser."
 
 check: $(VENV)/.test
 	$(BIN)/ruff check .
@@ -43,6 +48,7 @@ pictures: $(VENV)/.test
 
 clean:
 	rm -rf $(VENV) artefacts .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf book/_build book/chapters book/equations book/reference book/lectures.md
 
 $(VENV)/.made:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "projflow_lite needs Python 3.11 or newer; try: make $(MAKECMDGOALS) PYTHON=python3.12"; exit 1; }
@@ -60,7 +66,12 @@ $(VENV)/.lab: $(VENV)/.torch pyproject.toml constraints.txt
 	$(PIP) --editable .
 	@touch $@
 
+$(VENV)/.book: $(VENV)/.torch pyproject.toml constraints.txt
+	@echo "Installing what the book needs (a minute, once) ..."
+	$(PIP) --editable '.[book]'
+	@touch $@ $(VENV)/.lab
+
 $(VENV)/.test: $(VENV)/.torch pyproject.toml constraints.txt
 	@echo "Installing what the tests need (a minute, once) ..."
 	$(PIP) --editable '.[test]'
-	@touch $@ $(VENV)/.lab
+	@touch $@ $(VENV)/.lab $(VENV)/.book
