@@ -191,7 +191,8 @@ def test_no_training_seed_draws_the_numbers_of_held_out_clips(seed, monkeypatch)
 
 def test_held_out_actions_come_equally_often_in_every_set():
     for n in (34, 64, 200, 400):
-        counts = np.array([held_out(n, 20).actions.count(name) for name in ACTIONS])
+        actions = held_out(n, 20).actions
+        counts = np.array([actions.count(name) for name in ACTIONS])
         assert np.ptp(counts) <= 1
     assert set(held_out(25, 20, actions=["squat", "bow"]).actions) == {"squat", "bow"}
 

@@ -1,0 +1,68 @@
+"""The explorer of methods: same noise, same wish, and numbers that say what was given up."""
+
+import numpy as np
+import pytest
+import torch
+
+from projflow_lite.studies.method_explorer import WAYS, MethodExplorer
+
+
+class Still:
+    """The flow to one body that stands a metre up, with a little of everything that x_t says."""
+
+    noise_std = 0.3
+
+    def __call__(self, x_t, t, text):
+        x1 = 0.9 * torch.tensor([0.0, 1.0, 0.0]) + 0.1 * x_t
+        return (x1 - x_t) / (1 - t)
+
+
+@pytest.fixture(scope="module")
+def explorer():
+    made = MethodExplorer(Still(), frames=24, batch=2)
+    made.try_all()
+    return made
+
+
+def test_every_method_has_its_line(explorer):
+    assert list(explorer.outcomes) == ["projflow", *(name for name in WAYS if name != "projflow")]
+    assert explorer.table.value.count("<tr") == 1 + len(WAYS)
+    assert "font-weight: bold" in explorer.table.value
+
+
+def test_the_exact_methods_are_exact_and_no_wish_misses(explorer):
+    missed = {name: outcome.numbers[0] for name, outcome in explorer.outcomes.items()}
+    for name in ("projflow", "ddnm", "replacement", "imputation"):
+        assert missed[name] < 1e-3, name
+    assert missed["no wish"] > 10
+
+
+def test_numbers_are_those_of_the_motion(explorer):
+    name = explorer.joint.value
+    at = explorer.keyframes
+    motion = explorer.outcomes["dps"].motion
+    by_hand = np.mean(
+        [
+            np.linalg.norm(motion.joint(name)[b, f] - explorer.clip.joint(name)[f])
+            for b in range(2)
+            for f in at
+        ]
+    )
+    assert explorer.outcomes["dps"].numbers[0] == pytest.approx(100 * by_hand)
+
+
+def test_another_wish_begins_anew():
+    explorer = MethodExplorer(Still(), frames=24, batch=1)
+    explorer.method.value = "ddnm"
+    assert list(explorer.outcomes) == ["projflow", "ddnm"]
+    explorer.count.value = 2
+    assert list(explorer.outcomes) == ["ddnm"]
+    assert len(explorer.keyframes) == 2
+    explorer.joint.value = "head"
+    assert explorer.viewer.trail == [15]
+    assert explorer.viewer.motion.residual < 1e-6
+
+
+def test_a_prompt_that_no_clip_has_is_refused():
+    with pytest.raises(ValueError, match="no held-out clip is called 'flies'"):
+        MethodExplorer(Still(), "flies", frames=24)
