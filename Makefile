@@ -2,6 +2,7 @@
 #
 #   make lab ARGS=--no-browser       options for JupyterLab
 #   make test ARGS="-k projection"   options for pytest
+#   make test WORKERS=4              processes that share the test files (default 2)
 #   make lab PYTHON=python3.12       another Python (3.11 or newer)
 #   PIP_ARGS="..."                   options for pip, for example a mirror or PyTorch's CPU index
 
@@ -10,11 +11,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt $(PIP_ARGS)
 NOTEBOOK ?= notebooks/00_start_here.ipynb
+WORKERS ?= 2
 
 .PHONY: lab test book check browser hooks pictures clean help
 
 help:
-	@sed -n '1,7s/^# \{0,1\}//p' Makefile
+	@sed -n '1,8s/^# \{0,1\}//p' Makefile
 	@echo "also: make book (the notebooks as a web site), make check (ruff and mypy), make hooks (for contributors), make pictures, make clean"
 
 # JupyterLab refuses to run as root, as in most containers, unless it is told to.
@@ -22,7 +24,7 @@ lab: $(VENV)/.lab
 	$(BIN)/jupyter lab --LabApp.default_url=/lab/tree/$(NOTEBOOK) $(if $(filter 0,$(shell id -u)),--allow-root) $(ARGS)
 
 test: $(VENV)/.test browser check
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest $(ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadfile $(ARGS)
 
 # The notebooks as pages that need neither Python nor a network; a second build runs only what changed.
 book: $(VENV)/.book
