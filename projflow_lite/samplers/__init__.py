@@ -15,7 +15,7 @@ from projflow_lite.constraints import Wish
 from projflow_lite.motion import Motion
 from projflow_lite.prior.model import as_prompts
 from projflow_lite.samplers.adapter import Adapter
-from projflow_lite.samplers.aims import any_rows, exact_pins, exact_rows
+from projflow_lite.samplers.aims import any_rows, exact_pins, exact_rows, pins_to_impute
 from projflow_lite.samplers.ddnm import ddnm
 from projflow_lite.samplers.diffusion import ancestral
 from projflow_lite.samplers.dno import dno
@@ -24,7 +24,7 @@ from projflow_lite.samplers.euler import euler
 from projflow_lite.samplers.flowchef import flowchef
 from projflow_lite.samplers.flowdps import flowdps
 from projflow_lite.samplers.gmd import Metres, draw_noise, gmd
-from projflow_lite.samplers.gmd_imputation import Imputation, known_coordinates
+from projflow_lite.samplers.gmd_imputation import Imputation
 from projflow_lite.samplers.gmd_keyframes import gmd_keyframes
 from projflow_lite.samplers.gmd_obstacles import Avoid, box, circles, union
 from projflow_lite.samplers.goals import Goal, Together, check_pins, keep_speed, on_ground, reach
@@ -71,19 +71,6 @@ __all__ = [
     "sample",
     "union",
 ]
-
-
-def pins_to_impute(
-    wish: Wish | None,
-    frames: int,
-    metric: str | ArrayLike,
-    dtype: torch.dtype,
-    guides: bool | GuideSettings,
-) -> Imputation:
-    """What GMD asks in every step: known coordinates, without a metric and without guides."""
-    if not isinstance(metric, str) or metric != "kinematic" or isinstance(guides, GuideSettings):
-        raise ValueError("sample: gmd overwrites, it has no metric and no guides; leave them out")
-    return known_coordinates(wish, frames, dtype)
 
 
 class Method(NamedTuple):

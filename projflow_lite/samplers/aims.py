@@ -1,7 +1,7 @@
-"""What the rivals of ProjFlow make of a wish; none of them has a metric or guides to choose.
+"""What GMD and the rivals of ProjFlow make of a wish; none has a metric or guides to choose.
 
-Each function is an ``aim`` of `projflow_lite.samplers.Method`, after the name of the method, which
-its errors begin with.
+Each function is an ``aim`` of `projflow_lite.samplers.Method`; those of rivals take the name of the
+method first, which their errors begin with.
 """
 
 from __future__ import annotations
@@ -73,7 +73,25 @@ def exact_pins(
     return known_coordinates(wish, frames, dtype)
 
 
+def pins_to_impute(
+    wish: Wish | None,
+    frames: int,
+    metric: str | ArrayLike,
+    dtype: torch.dtype,
+    guides: bool | GuideSettings,
+) -> Imputation:
+    """What GMD asks in every step: known coordinates, without a metric and without guides."""
+    if has_chosen(metric, guides):
+        raise ValueError("sample: gmd overwrites, it has no metric and no guides; leave them out")
+    return known_coordinates(wish, frames, dtype)
+
+
+def has_chosen(metric: str | ArrayLike, guides: bool | GuideSettings) -> bool:
+    """Whether something was chosen that only ProjFlow has."""
+    return not isinstance(metric, str) or metric != "kinematic" or isinstance(guides, GuideSettings)
+
+
 def refuse_choices(who: str, metric: str | ArrayLike, guides: bool | GuideSettings) -> None:
     """Refuse what only ProjFlow has, if it was chosen."""
-    if not isinstance(metric, str) or metric != "kinematic" or isinstance(guides, GuideSettings):
+    if has_chosen(metric, guides):
         raise ValueError(f"sample: {who} has no metric and no guides to choose; leave them out")

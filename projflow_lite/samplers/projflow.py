@@ -12,6 +12,7 @@ from typing import NamedTuple
 import torch
 
 from projflow_lite.prior.model import Text
+from projflow_lite.samplers.options import check_callback
 from projflow_lite.samplers.step import ProjectionStep
 from projflow_lite.skeleton import shown
 
@@ -92,8 +93,7 @@ def projflow(
     """
     if noise not in ("original", "implied"):
         raise ValueError(f"projflow: noise is 'original' or 'implied', not {shown(noise)}")
-    if callback is not None and not callable(callback):
-        raise ValueError(f"projflow: callback is a function of a Step, not {shown(callback)}")
+    check_callback("projflow", callback)
     x_t = x0
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)

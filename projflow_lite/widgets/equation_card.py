@@ -65,12 +65,12 @@ class EquationCard(widgets.VBox):
         )
         parts = [self.choice, self.formula, self.erratum, self.inputs, self.output, self.code]
         super().__init__(parts)
-        self.paper.observe(self._list, "value")
-        self.equation.observe(self._open, "value")
         self.paper.value = paper
         self._list()
         self.equation.value = str(number)
         self._open()
+        self.paper.observe(self._list, "value")  # from here on: it was opened once
+        self.equation.observe(self._open, "value")
 
     @property
     def record(self) -> Record:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import html
 import time
 from collections.abc import Sequence
 from functools import reduce
@@ -17,10 +15,12 @@ from projflow_lite.constraints import Wish, pin
 from projflow_lite.motion import Motion
 from projflow_lite.samplers import Velocity, sample
 from projflow_lite.skeleton import JOINTS
-from projflow_lite.widgets.studio import SETTLE, report
+from projflow_lite.widgets.answering import Later, status_line
+from projflow_lite.widgets.studio import report
 from projflow_lite.widgets.viewer import Viewer
 
 ASK = "Grab a joint in the picture and drag it; it becomes a pin in the frame that is shown."
+SETTLE = 0.01  # seconds: a hand that drags is followed, and need not come to rest
 
 
 class PoseEditor(widgets.VBox):
@@ -65,8 +65,7 @@ class PoseEditor(widgets.VBox):
         self.pins: dict[tuple[int, int], tuple[float, ...]] = {}
         self.runs = 0
         self.error: Exception | None = None
-        self._waiting: asyncio.TimerHandle | None = None
-        self._count = 0
+        self._later = Later(SETTLE)
         self.motion = self._sample(steps)
         self.viewer = Viewer(self.motion, grab=True, playing=False, height=height)
         self._make_controls()
@@ -112,9 +111,7 @@ class PoseEditor(widgets.VBox):
         pull = change["new"]
         if not pull:
             return
-        key = pull["joint"], pull["frame"]
-        self.pins.pop(key, None)  # the last one moved is the first one to be undone
-        self.pins[key] = (*map(float, pull["at"]),)
+        self._pin(pull["joint"], pull["frame"], pull["at"])
         self.joint.value = pull["joint"]
         self._soon(self.steps if pull["done"] else self.drag_steps)
 
@@ -122,10 +119,13 @@ class PoseEditor(widgets.VBox):
         """A coordinate was written."""
         if self._showing:
             return
-        key = self.joint.value, self.viewer.frame
-        self.pins.pop(key, None)
-        self.pins[key] = (*(float(field.value) for field in self.place),)
+        self._pin(self.joint.value, self.viewer.frame, [field.value for field in self.place])
         self._soon(self.steps)
+
+    def _pin(self, joint: int, frame: int, at: Sequence[float]) -> None:
+        """Make a pin, or move it; the last one moved is the first one to be undone."""
+        self.pins.pop((joint, frame), None)
+        self.pins[joint, frame] = (*map(float, at),)
 
     def _take_away(self, number: int) -> None:
         """Take away the pins that were made last."""
@@ -135,14 +135,7 @@ class PoseEditor(widgets.VBox):
 
     def _soon(self, steps: int | Sequence[float]) -> None:
         """Run once things have settled: what was dragged while we were busy makes one motion."""
-        try:
-            loop = asyncio.get_running_loop()
-        except RuntimeError:  # a plain script or a test: no loop to wait in
-            self.run(steps)
-            return
-        if self._waiting is not None:
-            self._waiting.cancel()
-        self._waiting = loop.call_later(SETTLE / 5, self.run, steps)
+        self._later.call(self.run, steps)
 
     def run(self, steps: int | Sequence[float] | None = None) -> None:
         """Make the motion anew, and show it or say what is wrong."""
@@ -176,4 +169,4 @@ class PoseEditor(widgets.VBox):
         self._showing = False
 
     def _say(self, text: str, kind: str = "") -> None:
-        self.status.value = f'<div class="pf-status {kind}" role="status">{html.escape(text)}</div>'
+        self.status.value = status_line(text, kind)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
-import html
 import time
 import warnings
 from collections.abc import Callable, Sequence
@@ -15,6 +13,7 @@ from numpy.typing import NDArray
 
 from projflow_lite.motion import Motion
 from projflow_lite.skeleton import JOINTS, joint_index
+from projflow_lite.widgets.answering import Later, status_line
 from projflow_lite.widgets.path_pad import BOUNDS, PLANES, PathPad
 from projflow_lite.widgets.standing import standing_pose
 from projflow_lite.widgets.viewer import Viewer
@@ -83,7 +82,7 @@ class WishStudio(widgets.VBox):
         self.motion: Motion | None = None
         self.error: Exception | None = None
         self.runs = 0
-        self._waiting: asyncio.TimerHandle | None = None
+        self._later = Later(SETTLE)
         self.joint = widgets.Dropdown(
             options=[(name.replace("_", " "), name) for name in joints],
             value=joint,
@@ -147,14 +146,7 @@ class WishStudio(widgets.VBox):
 
     def _soon(self, *_: Any) -> None:
         """Run once things have settled: strokes drawn while we were busy make one motion."""
-        try:
-            loop = asyncio.get_running_loop()
-        except RuntimeError:  # a plain script or a test: no loop to wait in
-            self.run()
-            return
-        if self._waiting is not None:
-            self._waiting.cancel()
-        self._waiting = loop.call_later(SETTLE, self.run)
+        self._later.call(self.run)
 
     def run(self) -> None:
         """Make a motion for the path on the pad, and show it or say what is wrong."""
@@ -183,8 +175,7 @@ class WishStudio(widgets.VBox):
         self._say(" · ".join([report(motion, seconds), *said]))
 
     def _say(self, text: str, kind: str = "") -> None:
-        text = html.escape(text)
-        self.status.value = f'<div class="pf-status {kind}" role="status">{text}</div>'
+        self.status.value = status_line(text, kind)
 
 
 def report(motion: Motion, seconds: float) -> str:

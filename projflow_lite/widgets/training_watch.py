@@ -7,7 +7,6 @@ the button stops the training between two steps.
 from __future__ import annotations
 
 import atexit
-import html
 import threading
 import time
 from contextlib import closing
@@ -23,6 +22,7 @@ from projflow_lite.motion import Motion
 from projflow_lite.prior.loss_log import read_loss
 from projflow_lite.prior.model import Prior
 from projflow_lite.prior.training import Recipe, begin, finish, loss_of, steps_of
+from projflow_lite.widgets.answering import status_line
 from projflow_lite.widgets.board import Board
 from projflow_lite.widgets.viewer import Viewer
 
@@ -265,8 +265,7 @@ class TrainingWatch(widgets.VBox):
         self.button.icon = {"Done": "check", "Stop": "stop"}.get(label, "play")
         self.button.disabled = self.done
         kind = "pf-bad" if self.error else "pf-busy" if busy else ""
-        text = html.escape(self._report(busy))
-        self.status.value = f'<div class="pf-status {kind}" role="status">{text}</div>'
+        self.status.value = status_line(self._report(busy), kind)
 
     def _report(self, busy: bool) -> str:
         """One line: how far it is, how well it does, how long it will take."""
