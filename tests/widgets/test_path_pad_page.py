@@ -37,6 +37,18 @@ def drag(page, pad, points, steps=8):
     page.wait_for_timeout(50)
 
 
+def at(page, milliseconds):
+    """Set the clock that pointer events carry, so that a busy machine cannot change the rhythm."""
+    page.evaluate(
+        """(now) => new Promise((done) => requestAnimationFrame(() => {
+            // earlier moves are delivered with this frame; what follows happens at `now`
+            Object.defineProperty(Event.prototype, "timeStamp", { configurable: true, get: () => now });
+            done();
+        }))""",
+        milliseconds,
+    )
+
+
 def sent(page):
     return np.array(page.evaluate("sent('path_data')")).reshape(-1, 2)
 
@@ -76,15 +88,21 @@ def test_the_rhythm_of_the_hand_can_be_kept(open_page):
     page = open_page(width=500)
     pad = PathPad(samples=30, smoothing=0.0, timing="drawn")
     mount(page, pad)
+    at(page, milliseconds=0)
     page.mouse.move(*to_pixels(page, pad, (-0.5, 1)))
     page.mouse.down()
     for i in range(1, 11):  # slow, then fast
+        at(page, milliseconds=30 * i)
         page.mouse.move(*to_pixels(page, pad, (-0.5 + 0.02 * i, 1)))
-        page.wait_for_timeout(30)
+    at(page, milliseconds=330)
     page.mouse.move(*to_pixels(page, pad, (0.5, 1)))
     page.mouse.up()
-    steps = np.linalg.norm(np.diff(sent(page), axis=0), axis=1)
-    assert steps[-1] > 4 * steps[:10].mean()
+    moments = np.linspace(0, 330, 30)
+    x = np.interp(
+        moments, np.append(30 * np.arange(11), 330), np.append(-0.5 + 0.02 * np.arange(11), 0.5)
+    )
+    np.testing.assert_allclose(sent(page)[:, 0], x, atol=0.025)  # 2 pixels
+    np.testing.assert_allclose(sent(page)[:, 1], 1, atol=0.012)
 
 
 def test_drawing_outside_stays_inside(open_page):
