@@ -46,7 +46,7 @@ class Prior(nn.Module):
         super().__init__()
         self.vocabulary = vocabulary
         self.sizes = network or {}
-        self.network = Network(len(vocabulary), **self.sizes)
+        self.network = Network(len(vocabulary), mean=mean / noise_std, **self.sizes)
         self.mean: torch.Tensor
         self.register_buffer("mean", mean.float())
         self.noise_std = float(noise_std)

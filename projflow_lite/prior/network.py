@@ -26,6 +26,9 @@ from projflow_lite.skeleton import N_JOINTS, PARENTS
 CHANNELS = N_JOINTS * 3
 COPIES = 3
 
+LIMB = 0.013
+"""How well lengths of limbs are predicted, in units of the noise: about half a centimetre."""
+
 
 def bones_to_positions() -> torch.Tensor:
     """``(22, 22)``: adds bone vectors up from the pelvis, row = joint, column = bone to add."""
@@ -98,10 +101,16 @@ class Network(nn.Module):
         words: size of the vocabulary, padding included.
         widths: channels at half and quarter frame rate.
         condition: length of the vector that carries flow time and prompt.
+        mean: ``(22, 3)`` what was taken out of the motion to centre it, in its scale: without it
+            there is no telling how long a limb is.
     """
 
     def __init__(
-        self, words: int, widths: tuple[int, int] = (192, 288), condition: int = 256
+        self,
+        words: int,
+        widths: tuple[int, int] = (192, 288),
+        condition: int = 256,
+        mean: torch.Tensor | None = None,
     ) -> None:
         super().__init__()
         a, b = widths
@@ -126,7 +135,10 @@ class Network(nn.Module):
         self.spline: torch.Tensor
         self.register_buffer("add_up", bones_to_positions(), persistent=False)
         self.register_buffer("take_apart", bones_to_positions().inverse(), persistent=False)
+        self.usual: torch.Tensor
         self.register_buffer("spline", spline_kernel(), persistent=False)
+        centre = torch.zeros(N_JOINTS, 3) if mean is None else mean.float()
+        self.register_buffer("usual", self.take_apart @ centre, persistent=False)
 
     def forward(self, x: torch.Tensor, t: torch.Tensor, ids: torch.Tensor) -> torch.Tensor:
         """Predict the clean motion.
@@ -150,8 +162,25 @@ class Network(nn.Module):
         with torch.autocast(x.device.type, enabled=False):
             copies = self.smooth(seen[:, :CHANNELS]) * self.gate(condition.float()).unsqueeze(-1)
             points = self.leave(h.float()) + copies.unflatten(1, (CHANNELS, COPIES)).sum(2)
-        bones = draw(points, self.spline)[..., :frames].mT.unflatten(-1, (N_JOINTS, 3))
-        return self.add_up @ bones
+            bones = draw(points, self.spline)[..., :frames].mT.unflatten(-1, (N_JOINTS, 3))
+            return self.add_up @ self.even_limbs(bones, t)
+
+    def even_limbs(self, bones: torch.Tensor, t: torch.Tensor) -> torch.Tensor:
+        """Give every limb its mean length in all frames, the more so the less noise is left.
+
+        Earlier a prediction is the mean of several poses, and the mean of limbs that point in
+        different directions is shorter than a limb.
+
+        Args:
+            bones: ``(batch, frames, 22, 3)`` bone vectors, centred; the first is the pelvis.
+            t: ``(batch,)`` flow time.
+        """
+        limbs = bones[:, :, 1:] + self.usual[1:]
+        length = limbs.square().sum(-1, keepdim=True).clamp(min=1e-6).sqrt()
+        noise = ((1 - t) / t.clamp(min=1e-3)).view(-1, 1, 1, 1)
+        share = LIMB**2 / (LIMB**2 + noise.square())
+        longer = limbs * share * (length.mean(1, keepdim=True) / length - 1)
+        return torch.cat([bones[:, :, :1], bones[:, :, 1:] + longer], dim=2)
 
 
 def through(blocks: nn.ModuleList, x: torch.Tensor, condition: torch.Tensor) -> torch.Tensor:

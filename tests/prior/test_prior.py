@@ -20,7 +20,7 @@ from projflow_lite.prior.network import bones_to_positions, draw, spline_kernel
 from projflow_lite.prior.signals import undivided
 from projflow_lite.prior.text import TextEncoder, Vocabulary
 from projflow_lite.prior.training import RECIPES, Trainer, begin, learning_rate, loss_of, train
-from projflow_lite.skeleton import EDGES
+from projflow_lite.skeleton import EDGES, JOINTS
 
 SMOKE = replace(RECIPES["smoke"], steps=6, batch=4)
 SHORT = replace(SMOKE, lengths=(20,))
@@ -330,12 +330,42 @@ def test_a_second_round_starts_the_learning_rate_anew_at_half_its_height():
     assert rates[-1] < 1e-4
 
 
-def test_lengths_of_bones_count_only_when_asked_for_and_late(trained):
-    network, ids = trained[0].network, torch.zeros(64, 4, dtype=torch.long)
-    u1 = torch.randn(64, 20, 22, 3)
+def test_feet_count_as_much_as_they_are_told_to():
+    """By hand: a shift of the left ankle alone has no velocity and changes two bones."""
+    u1 = torch.randn(8, 20, 22, 3, generator=torch.Generator().manual_seed(1))
+    ids = torch.zeros(8, 1).long()
+    shift = torch.zeros(22, 3)
+    shift[JOINTS.index("left_ankle"), 0] = 1.0
+    times = []
 
-    def loss(**options):
-        return loss_of(network, u1, ids, torch.Generator().manual_seed(0), **options)
+    def predict(x, t, ids):
+        times.append(t)
+        return u1 + shift
 
-    assert loss(lengths=20.0) > loss()
-    assert loss(lengths=0.0) == loss()
+    for feet in (1.0, 8.0):
+        loss = float(loss_of(predict, u1, ids, torch.Generator().manual_seed(0), feet))
+        square = feet / ((18 + 4 * feet) / 22) / 66 + 2 * 2 / 63
+        expected = (square / ((1 - times[-1]) ** 2 + 0.005)).mean()
+        assert loss == pytest.approx(float(expected), rel=1e-5)
+
+
+def test_late_limbs_keep_their_length_and_early_they_need_not(trained):
+    network = trained[0].network
+    bones = network.take_apart @ torch.randn(4, 40, 22, 3)
+
+    def change(t):
+        even = network.even_limbs(bones, torch.full((4,), t))
+        torch.testing.assert_close(even[:, :, 0], bones[:, :, 0])
+        length = (even[:, :, 1:] + network.usual[1:]).norm(dim=-1)
+        return (length.std(1) / length.mean(1)).max()
+
+    assert change(1.0) < 1e-4
+    assert change(0.5) > 0.1
+
+
+def test_limbs_of_real_lengths_are_left_as_they_are(trained):
+    prior, _ = trained
+    made = torch.as_tensor(make_clips(4, frames=40, seed=5).positions)
+    bones = prior.network.take_apart @ ((made - prior.mean) / prior.noise_std)
+    even = prior.network.even_limbs(bones, torch.ones(4))
+    torch.testing.assert_close(even, bones, atol=1e-4, rtol=0)
