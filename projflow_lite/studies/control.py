@@ -83,6 +83,7 @@ class Protocol(NamedTuple):
         joints, densities: of the keyframes.
         rivals: the methods.
         edit: whether the upper body is edited too, with the lower body given in every frame.
+        clock: whether methods are timed.
     """
 
     clips: int = 128
@@ -92,6 +93,7 @@ class Protocol(NamedTuple):
     densities: tuple[int, ...] = DENSITIES
     rivals: tuple[Rival, ...] = RIVALS + ABLATIONS
     edit: bool = True
+    clock: bool = True
 
 
 QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), (*RIVALS[:-1], QUICK_DNO, *ABLATIONS))
@@ -139,13 +141,14 @@ def run(
         )
 
     times = {}
-    for rival in p.rivals:
+    for rival in p.rivals if p.clock else ():
         clock = partial(timed, velocity, noise_std, rival, p.steps)
-        times[rival.name] = stored(place / rival.spelled / f"time-{device}.json", clock)[TIME]
+        path = place / rival.spelled / f"time-{device}.json"
+        times[rival.name] = {TIME: stored(path, clock)[TIME]}
     found = filled(place, cells_of(p), p.seeds, measure, progress)
     about = {"clips": p.clips, "steps": p.steps}
     rows = summarised(found, groups_of(p), p.rivals, COLUMNS, about)
-    return [data_row(p, reference), *(row | {TIME: times[row["method"]]} for row in rows)]
+    return [data_row(p, reference), *(row | times.get(row["method"], {}) for row in rows)]
 
 
 def cells_of(p: Protocol) -> list[Cell]:
