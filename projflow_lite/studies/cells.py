@@ -11,6 +11,7 @@ import hashlib
 import itertools
 import json
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -148,7 +149,7 @@ def filled(
         for seed, cell in itertools.product(range(seeds), cells):
             bar.set_description(f"seed {seed}, {cell.joint}, {cell.keys}, {cell.rival.name}")
             path = place / cell.path / f"seed-{seed}.json"
-            found[cell].append(stored(path, lambda cell=cell, seed=seed: measure(cell, seed)))  # type: ignore[misc]
+            found[cell].append(stored(path, partial(measure, cell, seed)))
             bar.update(1)
     return found
 
@@ -174,8 +175,8 @@ def summarised(
         parts = [found[Cell(joint, keys, rival)] for joint, keys in group.parts]
         values = [mean_of(list(seed)) for seed in zip(*parts, strict=True)]
         own = {"joint": group.joint, "keys": group.keys, "method": rival.name}
-        own["options"] = dict(rival.options)  # type: ignore[assignment]
-        rows.append(own | about | {"seeds": len(values), "scores": over_seeds(values, columns)})
+        extent = about | {"options": dict(rival.options), "seeds": len(values)}
+        rows.append(own | extent | {"scores": over_seeds(values, columns)})
     return rows
 
 

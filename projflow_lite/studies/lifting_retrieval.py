@@ -1,8 +1,9 @@
 """Motion retrieval: of clips that exist, the one whose drawing is nearest to the wanted one.
 
-A stock of clips of the training stream is drawn through the same camera. Those whose captions share
-most words with the prompt are kept, and of them the one is taken whose drawn points are nearest, as
-they stand. Sketch2Anim's own baseline compares learnt embeddings of text and sketch instead.
+A stock of clips, of the kind that the prior was trained on, is drawn through the same camera. Those
+whose captions share most words with the prompt are kept, and of them the one is taken whose drawn
+points are nearest, as they stand. Sketch2Anim's own baseline compares learnt embeddings of text and
+sketch instead.
 """
 
 from __future__ import annotations
