@@ -21,6 +21,9 @@ from projflow_lite.studies.cells import ALL
 
 DATA, TIME = "held-out data", "time"
 
+EXACT = 1e-5
+"""Errors below this are rounding: two methods that both stay below are not told apart."""
+
 Rows = list[dict[str, Any]]
 
 
@@ -105,10 +108,14 @@ def of_claim(rows: Rows, claim: Claim, printed: Printed) -> str | None:
     cells = [row["scores"][claim.column] for row in pair if row is not None]
     difference = difference_of(*cells)
     theirs = [printed.number(claim.joint, name, claim.column) for name in (claim.less, claim.more)]
-    return (
+    said = (
         f"{claim.joint}, {claim.column}: {claim.less} less than {claim.more} "
         f"({theirs[0]:g} and {theirs[1]:g} in {printed.source(*claim[2:])}); here "
-        f"{shown(cells[0])} and {shown(cells[1])}, difference {difference.mean:+.3g} ± "
+    )
+    if all(max(cell["values"]) < EXACT for cell in cells):
+        return f"{said}both are exact: undecided."
+    return (
+        f"{said}{shown(cells[0])} and {shown(cells[1])}, difference {difference.mean:+.3g} ± "
         f"{difference.half_width:.2g}: {verdict(difference)}."
     )
 

@@ -111,10 +111,14 @@ def draw_times(axes: Any, rows: list[dict[str, Any]], looks: dict[str, Any] = LO
 
 
 def few_ticks(axis: Any) -> None:
-    """Numbers 1, 2 and 5 of every decade on a logarithmic axis, without powers of ten."""
+    """Numbers 1, 2 and 5 of a decade on a logarithmic axis, without powers of ten.
+
+    Of many decades 1 alone.
+    """
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 100 * low else (1,)))
     axis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axis.set_minor_formatter(NullFormatter())
 

@@ -92,7 +92,7 @@ class Protocol(NamedTuple):
 
 CHEAP = ("no wish", "projflow", "ddnm", "flowdps", "dps", *(rival.name for rival in BASELINES))
 QUICK = Protocol(
-    32, 2, 10, ("pelvis", "left_wrist"),
+    32, 3, 10, ("pelvis", "left_wrist"),
     tuple(rival for rival in RIVALS_OF_LIFTING if rival.name in CHEAP), Effort(1024, 300, 300),
 )  # fmt: skip
 """A first look: its intervals are wide, two joints stand for six, and the baselines learn less."""

@@ -5,7 +5,7 @@ at the time between the two. It answers with the depth of all joints. Since the 
 guessed points lie exactly where they were drawn, and the sampler that follows is ProjFlow with
 pins. So this row differs from ProjFlow's own in one thing only: depth is decided beforehand, by a
 regression that knows neither the prompt nor the frames between, and not by the flow. Sketch2Anim's
-baseline lifts with MotionBERT and controls with a trained branch instead.
+baseline lifts with MotionBERT and controls with a trained branch instead, which need not obey.
 """
 
 from __future__ import annotations
@@ -28,7 +28,14 @@ STEPS = 1200
 
 
 class Lifter(nn.Module):
-    """Three layers: a drawn frame, the drawn pose, the line of sight and the time to depths."""
+    r"""Depth of the drawn pose, and what a frame adds to it.
+
+    One and the same network f is asked three times,
+
+    .. math:: d_n = f(\text{pose}) + f(\text{frame } n) - f(\text{pose, seen as frame } n),
+
+    so that depth begins with the pose's, and does not jump where fewer joints are drawn.
+    """
 
     def __init__(self, width: int = 256) -> None:
         super().__init__()
@@ -40,11 +47,26 @@ class Lifter(nn.Module):
 
     def forward(self, drawn: Drawn) -> torch.Tensor:
         """Depth ``(clips, frames, 22)`` of joints along the line of sight, metres."""
-        picture = drawn.picture.flatten(2)
-        pose = picture[:, :1].expand_as(picture)
-        sight = drawn.sight[:, None].expand(-1, picture.shape[1], -1)
-        seconds = torch.arange(picture.shape[1])[:, None].expand(len(picture), -1, -1) / FPS
-        return self.layers(torch.cat([picture, drawn.asked, pose, sight, seconds], dim=2))
+        frames = drawn.picture.shape[1]
+        pose = drawn.picture[:, :1].expand_as(drawn.picture)
+        seconds = torch.arange(frames)[:, None].expand(len(pose), -1, -1) / FPS
+        begun = self.look(pose[:, :1], drawn.asked[:, :1], pose[:, :1], drawn.sight, seconds[:, :1])
+        now = self.look(drawn.picture, drawn.asked, pose, drawn.sight, seconds)
+        then = self.look(pose, drawn.asked, pose, drawn.sight, 0 * seconds)
+        return begun + now - then
+
+    def look(
+        self,
+        picture: torch.Tensor,
+        asked: torch.Tensor,
+        pose: torch.Tensor,
+        sight: torch.Tensor,
+        seconds: torch.Tensor,
+    ) -> torch.Tensor:
+        """The network f: depths ``(clips, frames, 22)`` from single frames and the pose."""
+        seen = (picture * asked[..., None]).flatten(2)
+        along = sight[:, None].expand(-1, picture.shape[1], -1)
+        return self.layers(torch.cat([seen, asked, pose.flatten(2), along, seconds], dim=2))
 
 
 def learn(lifter: Lifter, frames: int, steps: int = STEPS) -> None:

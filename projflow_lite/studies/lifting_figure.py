@@ -12,10 +12,10 @@ from projflow_lite.studies.claims import DATA
 from projflow_lite.studies.control_figure import EXACT, LOOKS, band, draw_times, few_ticks, look
 from projflow_lite.studies.lifting_paper import DIRECT, LIFT, RETRIEVAL
 from projflow_lite.studies.lifting_pictures import CROSS
-from projflow_lite.studies.posterior_figure import BLUE, GREEN, ORANGE, RED, STYLE
+from projflow_lite.studies.posterior_figure import GREEN, ORANGE, PINK, RED, STYLE
 
 LOOK = LOOKS | {
-    RETRIEVAL: (GREEN, "s", "-"), LIFT: (BLUE, "^", "-"), DIRECT: (ORANGE, "s", "-"),
+    RETRIEVAL: (GREEN, "s", "-"), LIFT: (PINK, "s", "-"), DIRECT: (ORANGE, "s", "-"),
     "euclid": (RED, "x", "-"), "no fresh noise": (RED, "+", "-"),
 }  # fmt: skip
 
@@ -53,11 +53,13 @@ def draw_errors(
     band(axes, data, "FID")
     for row in rows:
         colour, mark, _ = look(row["method"], LOOK)
+        # Exact methods meet at the left edge: ProjFlow's mark is larger and under theirs.
+        size, order = (11, 2) if row["method"] == "projflow" else (6, 3)
         miss, cell = row["scores"][error], row["scores"]["FID"]
         axes.errorbar(
             max(miss["mean"], EXACT), cell["mean"], xerr=miss["half width"],
-            yerr=cell["half width"], color=colour, marker=mark, ms=7, elinewidth=0.8, ls="none",
-            label=row["method"],
+            yerr=cell["half width"], color=colour, marker=mark, ms=size, elinewidth=0.8, ls="none",
+            label=row["method"], zorder=order,
         )  # fmt: skip
     unit = "picture units (left edge: exact)" if error.endswith("2D") else "m"
     axes.set(xscale="log", yscale="log", xlabel=f"{error}, {unit}", ylabel="FID", title=title)

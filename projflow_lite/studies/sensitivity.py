@@ -54,7 +54,7 @@ def protocol_of(
     return Protocol(clips, seeds, steps, joints, densities, rivals, edit=False, clock=False)
 
 
-QUICK = protocol_of(QUICK_SWEEPS, 32, 2, 10, ("left_wrist",), (5,))
+QUICK = protocol_of(QUICK_SWEEPS, 32, 3, 10, ("left_wrist",), (5,))
 """A first look: wide intervals, two values of each constant, one joint, one density."""
 
 
