@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from projflow_lite.studies.claims import find
+from projflow_lite.studies.claims import difference_of, find
 from projflow_lite.studies.posterior_figure import BLUE, GREY, RED, STYLE
 from projflow_lite.studies.sensitivity_sweeps import SWEEPS, USUAL, Sweep, spelled
 from projflow_lite.studies.sensitivity_words import JUDGED, measured_of
@@ -43,26 +43,30 @@ def figure(rows: list[dict[str, Any]], path: str | Path) -> Path:
 
 
 def draw_sweep(axes: Any, rows: list[dict[str, Any]], sweep: Sweep) -> None:
-    """Both scores over the values of one constant, as multiples of the usual constants' scores."""
+    """Both scores over the values of one constant, as multiples of the usual constants' scores.
+
+    Bars are intervals of the differences: all values have the same captions, keyframes and noise.
+    """
     usual = find(rows, "average", USUAL.name)
     assert usual is not None
     here = usual["steps"] if sweep.usual is None else sweep.usual
     found = in_order([*measured_of(rows, sweep), (here, usual)])
     places = range(len(found))
     for column, colour, mark in zip(JUDGED, (RED, BLUE), "os", strict=True):
-        unit = usual["scores"][column]["mean"]
-        cells = [row["scores"][column] for _, row in found]
+        base = usual["scores"][column]
+        more = [difference_of(row["scores"][column], base) for _, row in found]
         axes.errorbar(
-            places, [cell["mean"] / unit for cell in cells],
-            yerr=[cell["half width"] / unit for cell in cells],
+            places, [1 + difference.mean / base["mean"] for difference in more],
+            yerr=[difference.half_width / base["mean"] for difference in more],
             color=colour, marker=mark, ms=4, lw=1.2, elinewidth=0.8, label=column,
         )  # fmt: skip
     axes.axhline(1.0, color=GREY, lw=0.8)
     at = [value for value, _ in found].index(here)
     axes.axvspan(at - 0.3, at + 0.3, color=GREY, alpha=0.2, lw=0, label="the usual value")
     axes.set_xticks(places, [spelled(value) for value, _ in found])
-    axes.set(title=f"{sweep.name}: {sweep.says}", ylabel="over the usual")
-    axes.title.set_fontsize(8.5)
+    axes.set_title(f"{sweep.name}: {sweep.says}", fontsize=8.5)
+    low, high = axes.get_ylim()  # what hardly matters should look like it
+    axes.set(ylabel="over the usual", ylim=(min(low, 0.9), max(high, 1.1)))
 
 
 def in_order(found: list[tuple[Any, dict[str, Any]]]) -> list[tuple[Any, dict[str, Any]]]:

@@ -1,8 +1,9 @@
 """The study of sensitivity as a table, and what it says in sentences.
 
-A value of a constant is *better* or *worse* than the usual one if the difference of a score has a
-95 % interval over seeds that excludes 0, and else *undecided*. All values have the same captions,
-keyframes and noise. With some forty values one or two differences will be called certain by chance.
+A value of a constant is *alike* to the usual one in a score if their difference, with its 95 %
+interval over seeds, stays below a twentieth of that score. It is *better* or *worse* if the
+interval excludes 0, and else *undecided*. All values have the same captions, keyframes and noise.
+With some forty values one or two differences will be called certain by chance.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from projflow_lite.studies.claims import difference_of, find, line_of, shown, verdict
+from projflow_lite.studies.fewer_steps_words import TOLERANCE
 from projflow_lite.studies.sensitivity_sweeps import SWEEPS, USUAL, Sweep, spelled
 
 JUDGED = ("kinetic distance", "FID")
@@ -35,8 +37,12 @@ def measured_of(rows: list[Row], sweep: Sweep) -> list[tuple[Any, Row]]:
 
 
 def judged(row: Row, usual: Row, column: str) -> str:
-    """Is a row better than the usual constants, worse, or undecided?"""
-    return OUTCOME[verdict(difference_of(row["scores"][column], usual["scores"][column]))]
+    """Is a row better than the usual constants, worse, alike, or undecided?"""
+    difference = difference_of(row["scores"][column], usual["scores"][column])
+    reach = abs(difference.mean) + difference.half_width
+    if reach < TOLERANCE * usual["scores"][column]["mean"]:
+        return "alike"
+    return OUTCOME[verdict(difference)]
 
 
 def of_sweep(rows: list[Row], sweep: Sweep, column: str) -> str | None:
@@ -62,7 +68,7 @@ def of_sweep(rows: list[Row], sweep: Sweep, column: str) -> str | None:
 
 
 def of_all(rows: list[Row], column: str) -> str | None:
-    """How many values are better or worse than the usual ones."""
+    """How many values are better than the usual ones, worse, or alike."""
     usual = find(rows, "average", USUAL.name)
     found = [row for sweep in SWEEPS for _, row in measured_of(rows, sweep)]
     if usual is None or not found:
@@ -72,7 +78,8 @@ def of_all(rows: list[Row], column: str) -> str | None:
     names = f" ({', '.join(better)})" if better else ""
     return (
         f"{column}: of {len(said)} values that differ from the usual ones {len(better)} are "
-        f"better{names}, {said.count('worse')} are worse and {said.count('undecided')} undecided."
+        f"better{names}, {said.count('worse')} are worse, {said.count('alike')} alike and "
+        f"{said.count('undecided')} undecided."
     )
 
 

@@ -212,11 +212,23 @@ def test_a_lifter_looks_at_one_frame_and_the_pose(learnt, clips):
     assert np.all(moved > 0)
 
 
+def test_depth_does_not_jump_where_fewer_joints_are_drawn(learnt, clips):
+    """A body that stands still, drawn whole in frame 0 and by its head from there on."""
+    shot = draw_shot("head", 3)
+    drawn = lifting_lessons.as_drawn([shot] * 3, shot.drawn(clips.positions[:, [0, 0]]))
+    with torch.no_grad():
+        depth = learnt.lifter(drawn)[..., 15]
+        pose, seconds = drawn.picture[:, :1].expand(-1, 2, -1, -1), torch.zeros(3, 2, 1)
+        alone = learnt.lifter.look(drawn.picture, drawn.asked, pose, drawn.sight, seconds)[..., 15]
+    torch.testing.assert_close(depth[:, 0], alone[:, 0])
+    assert (depth[:, 1] - depth[:, 0]).abs().max() < 0.2 * (alone[:, 1] - alone[:, 0]).abs().min()
+
+
 def test_a_lifter_learns_depths(monkeypatch):
     lesson = one_lesson(monkeypatch)
     torch.manual_seed(1)
     lifter = Lifter(64)
-    lifting_depths.learn(lifter, 60, steps=80)
+    lifting_depths.learn(lifter, 60, steps=200)
     depth = (lesson.positions * lesson.drawn.sight[:, None, None]).sum(-1)
     drawn = lesson.drawn.asked > 0
     with torch.no_grad():

@@ -135,6 +135,7 @@ ROWS = [
     row("c0 = 10", 4.0, 5.1, 6.0),
     row("c0 = 30", 1.0, 9.0, 4.0),
     row("steps = 5", 3.0, 4.1, 5.0),
+    row("p = 4", 2.02, 3.03, 4.02),
 ]
 
 
@@ -152,13 +153,19 @@ def test_values_are_judged_by_differences_of_the_same_seeds():
     )
 
 
+def test_a_difference_that_is_certain_but_small_is_none():
+    """Differences 0.02, 0.03, 0.02 of 3: below a twentieth, with all of the interval."""
+    p = next(sweep for sweep in SWEEPS if sweep.name == "p")
+    assert sensitivity_words.of_sweep(ROWS, p, "FID").endswith("4: +0.0233 ± 0.014, alike.")
+
+
 def test_all_values_are_counted_and_constants_put_in_order():
     assert sensitivity_words.of_all(ROWS, "FID") == (
-        "FID: of 4 values that differ from the usual ones 1 are better (c0 = 1), 2 are worse and "
-        "1 undecided."
+        "FID: of 5 values that differ from the usual ones 1 are better (c0 = 1), 2 are worse, 1 alike "
+        "and 1 undecided."
     )
     assert sensitivity_words.of_order(ROWS, "FID") == (
-        "FID, largest over smallest among the values tried: c0 2.48, steps 1.34."
+        "FID, largest over smallest among the values tried: c0 2.48, steps 1.34, p 1.01."
     )
 
 
