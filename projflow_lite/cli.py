@@ -39,7 +39,8 @@ def build_parser() -> argparse.ArgumentParser:
     reproduce = commands.add_parser("reproduce", help="measure or draw again what the docs show")
     reproduce.add_argument(
         "name",
-        help="contact-sheet, control, data-card, fewer-steps, noise-reading or posterior",
+        help="contact-sheet, control, data-card, fewer-steps, lifting, noise-reading, posterior "
+        "or sensitivity",
     )
     reproduce.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     reproduce.add_argument("--out", type=Path, default=Path("book"), help="folder (default: book)")

@@ -15,8 +15,10 @@ from projflow_lite.studies import (
     control,
     data_card,
     fewer_steps,
+    lifting,
     noise_reading,
     posterior,
+    sensitivity,
 )
 
 
@@ -47,11 +49,26 @@ def run_contact_sheet(wanted: Wanted) -> dict[str, Any]:
 
 def run_control(wanted: Wanted) -> dict[str, Any]:
     """Which zero-shot method obeys, at which cost? Table 1 and 7 of ProjFlow."""
-    rows = control.run(load_prior(wanted.prior), control.QUICK if wanted.quick else None)
-    print(control.table(rows))
+    return compared("control", control, wanted)
+
+
+def run_lifting(wanted: Wanted) -> dict[str, Any]:
+    """From a drawing to a motion. Table 2 of ProjFlow."""
+    return compared("lifting", lifting, wanted)
+
+
+def run_sensitivity(wanted: Wanted) -> dict[str, Any]:
+    """How much does each constant matter? Those of Table 5 of ProjFlow."""
+    return compared("sensitivity", sensitivity, wanted)
+
+
+def compared(name: str, study: Any, wanted: Wanted) -> dict[str, Any]:
+    """Run a comparison of methods: its table, its picture and its records."""
+    rows = study.run(load_prior(wanted.prior), study.QUICK if wanted.quick else None)
+    print(study.table(rows))
     pictures = wanted.out / "pictures"
     pictures.mkdir(parents=True, exist_ok=True)
-    picture = control.figure(rows, pictures / "control.png")
+    picture = study.figure(rows, pictures / f"{name}.png")
     return {"picture": str(picture), "rows": rows}
 
 
@@ -83,6 +100,8 @@ STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
     "control": run_control,
     "data-card": run_data_card,
     "fewer-steps": run_fewer_steps,
+    "lifting": run_lifting,
     "noise-reading": run_noise_reading,
     "posterior": run_posterior,
+    "sensitivity": run_sensitivity,
 }

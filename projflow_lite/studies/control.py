@@ -2,8 +2,9 @@
 
 Captions of held-out clips, and where one joint of those clips is in 1, 2, 5, a quarter and all of
 their frames. How near does a method come, what does the motion look like afterwards, and what does
-it cost? The paper compares methods on different priors with different metric code; here they share
-everything but themselves.
+it cost? And, as in the last rows of those tables, the lower body is given in every frame, and the
+prompt moves the rest. The paper compares methods on different priors with different metric code;
+here they share everything but themselves.
 
 A full run takes many hours on a laptop, so every cell of the table is stored as it is made: an
 interrupted run goes on from where it was, and more seeds narrow the intervals of a finished one.
@@ -12,38 +13,52 @@ interrupted run goes on from where it was, and more seeds narrow the intervals o
 
 from __future__ import annotations
 
-import argparse
 import itertools
-import json
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Callable
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from tqdm.auto import tqdm
 
 from data_synth import Clips, held_out
 from projflow_lite.prior import Prior, load_prior
 from projflow_lite.samplers.projflow import Velocity
-from projflow_lite.scores import control_errors, frechet_distance, interval, score_clips
+from projflow_lite.scores import control_errors
+from projflow_lite.studies.cells import (
+    ALL,
+    Cell,
+    Features,
+    Group,
+    Rival,
+    check_extent,
+    features_of,
+    filled,
+    fingerprint,
+    options_of,
+    over_seeds,
+    published,
+    quality,
+    stored,
+    summarised,
+)
+from projflow_lite.studies.claims import DATA, TIME
 from projflow_lite.studies.control_figure import figure
 from projflow_lite.studies.control_ways import (
     ABLATIONS,
+    EDIT,
     FREE,
     QUICK_DNO,
     RIVALS,
     Made,
-    Rival,
     Task,
     elsewhere,
     make,
     time_ratio,
 )
-from projflow_lite.studies.control_words import ALL, COLUMNS, DATA, TIME, sentences, table
-from projflow_lite.studies.fewer_steps import Features, features_of, fingerprint, stored
+from projflow_lite.studies.control_words import COLUMNS, sentences, table
 from projflow_lite.studies.noise_reading import FRAMES
 
 __all__ = ["figure", "run", "sentences", "table"]
@@ -67,6 +82,8 @@ class Protocol(NamedTuple):
         steps: of sampling.
         joints, densities: of the keyframes.
         rivals: the methods.
+        edit: whether the upper body is edited too, with the lower body given in every frame.
+        clock: whether methods are timed.
     """
 
     clips: int = 128
@@ -75,6 +92,8 @@ class Protocol(NamedTuple):
     joints: tuple[str, ...] = JOINTS
     densities: tuple[int, ...] = DENSITIES
     rivals: tuple[Rival, ...] = RIVALS + ABLATIONS
+    edit: bool = True
+    clock: bool = True
 
 
 QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), (*RIVALS[:-1], QUICK_DNO, *ABLATIONS))
@@ -103,41 +122,63 @@ def run(
         One record a row, held-out data first: ``joint``, ``keys``, ``method``, ``options`` and
         ``scores``, each with its ``mean``, its ``half width`` (95 %) and the ``values`` of all
         seeds. Then for every joint the mean over densities (``keys`` is "all"), and that over
-        joints (``joint`` is "average").
+        joints (``joint`` is "average"); and last the upper-body edit.
 
     Raises:
         ValueError: for fewer than 32 clips, or fewer than 2 seeds.
     """
     p = protocol or Protocol()
-    if p.clips < 32 or p.seeds < 2:
-        raise ValueError(f"control: at least 32 clips and 2 seeds, not {p.clips} and {p.seeds}")
+    check_extent("control", p.clips, p.seeds)
     reference = features_of(held_out(16 * p.clips, FRAMES, REFERENCE).positions)
     place = Path(folder) / f"{fingerprint(prior)}-{fingerprint(reference)}-{p.clips}-{p.steps}"
     velocity, noise_std = elsewhere(prior, device), prior.noise_std
-    data: list[dict[str, float]] = []
-    cells: dict[tuple[str, int, Rival], list[dict[str, float]]] = {}
-    times: dict[Rival, float] = {}
-    names = list(itertools.product(p.joints, p.densities, p.rivals))
-    with tqdm(total=p.seeds * len(names), disable=not progress, unit="cell") as bar:
-        for rival in p.rivals:
-            bar.set_description(f"time of {rival.name}")
-            clock = partial(timed, velocity, noise_std, rival, p.steps)
-            times[rival] = stored(place / rival.spelled / f"time-{device}.json", clock)[TIME]
-        for seed in range(p.seeds):
-            others = held_out(p.clips, FRAMES, OTHERS + seed)
-            data.append(score(others.positions, others, None, reference, seed))
-            wished = held_out(p.clips, FRAMES, WISHED + seed)
-            for joint, keys, rival in names:
-                bar.set_description(f"seed {seed}, {joint}, {keys} keys, {rival.name}")
-                task = Task(joint, keys, FRAMES)
-                work = partial(
-                    measured, velocity, noise_std, rival, task, wished, p.steps, seed, reference
-                )
-                path = place / rival.spelled / f"{joint}-{keys}" / f"seed-{seed}.json"
-                cells.setdefault((joint, keys, rival), []).append(stored(path, work))
-                bar.update(1)
-    rows = [record(data, method=DATA, joint=ALL, keys=ALL, options={}, protocol=p)]
-    return rows + summarised(cells, times, p)
+    wished = cache(lambda seed: held_out(p.clips, FRAMES, WISHED + seed))
+
+    def measure(cell: Cell, seed: int) -> dict[str, float]:
+        task = Task(cell.joint, int(cell.keys), FRAMES)
+        return measured(
+            velocity, noise_std, cell.rival, task, wished(seed), p.steps, seed, reference
+        )
+
+    times = {}
+    for rival in p.rivals if p.clock else ():
+        clock = partial(timed, velocity, noise_std, rival, p.steps)
+        path = place / rival.spelled / f"time-{device}.json"
+        times[rival.name] = {TIME: stored(path, clock)[TIME]}
+    found = filled(place, cells_of(p), p.seeds, measure, progress)
+    about = {"clips": p.clips, "steps": p.steps}
+    rows = summarised(found, groups_of(p), p.rivals, COLUMNS, about)
+    return [data_row(p, reference), *(row | times.get(row["method"], {}) for row in rows)]
+
+
+def cells_of(p: Protocol) -> list[Cell]:
+    """Everything that is measured."""
+    edits = [(EDIT, FRAMES)] if p.edit else []
+    tasks = [*itertools.product(p.joints, p.densities), *edits]
+    return [Cell(joint, keys, rival) for joint, keys in tasks for rival in p.rivals]
+
+
+def groups_of(p: Protocol) -> list[Group]:
+    """A row for every cell, for every joint over densities, for all joints, and for the edit."""
+    whole = tuple(itertools.product(p.joints, p.densities))
+    return [
+        *(Group(joint, keys, ((joint, keys),)) for joint, keys in whole),
+        *(Group(j, ALL, tuple(itertools.product((j,), p.densities))) for j in p.joints),
+        *(Group("average", k, tuple(itertools.product(p.joints, (k,)))) for k in p.densities),
+        Group("average", ALL, whole),
+        *([Group(EDIT, ALL, ((EDIT, FRAMES),))] if p.edit else []),
+    ]
+
+
+def data_row(p: Protocol, reference: Features) -> dict[str, Any]:
+    """What other held-out clips score against the reference."""
+    parts = []
+    for seed in range(p.seeds):
+        others = held_out(p.clips, FRAMES, OTHERS + seed)
+        parts.append(score(others.positions, others, None, reference, seed))
+    about = {"joint": ALL, "keys": ALL, "method": DATA, "options": {}}
+    extent = {"clips": p.clips, "seeds": p.seeds, "steps": p.steps}
+    return about | extent | {"scores": over_seeds(parts, COLUMNS)}
 
 
 def measured(
@@ -172,10 +213,7 @@ def score(
     positions: NDArray, clips: Clips, made: Made | None, reference: Features, seed: int
 ) -> dict[str, float]:
     """The columns of the table, each over a whole set of clips; without a wish no errors."""
-    own = features_of(positions)
-    row = score_clips(positions, clips.captions, seed=seed)
-    row["kinetic distance"] = frechet_distance(own.kinetic, reference.kinetic)
-    row["FID"] = frechet_distance(own.points, reference.points)
+    row = quality(positions, clips.captions, reference, seed)
     if made is not None:
         errors = control_errors(positions, made.targets)
         row |= {f"{name} error": float(e.mean()) for name, e in errors._asdict().items()}
@@ -183,59 +221,14 @@ def score(
     return {name: row[name] for name in COLUMNS if name in row}
 
 
-def record(values: list[dict[str, float]], protocol: Protocol, **about: Any) -> dict[str, Any]:
-    """One row: what it is of, and its scores over seeds."""
-    scores = {}
-    for name in (name for name in COLUMNS if name in values[0]):
-        column = [row[name] for row in values]
-        mean, half = interval(column)
-        scores[name] = {"mean": mean, "half width": half, "values": column}
-    extent = {"clips": protocol.clips, "seeds": len(values), "steps": protocol.steps}
-    return about | extent | {"scores": scores}
-
-
-def summarised(
-    cells: dict[tuple[str, int, Rival], list[dict[str, float]]],
-    times: dict[Rival, float],
-    protocol: Protocol,
-) -> list[dict[str, Any]]:
-    """A row for every cell, for every joint over densities, and for all joints together."""
-    rows = []
-    p = protocol
-    groups: list[tuple[str, Any, Sequence[str], Sequence[int]]] = [
-        *((joint, keys, (joint,), (keys,)) for joint in p.joints for keys in p.densities),
-        *((joint, ALL, (joint,), p.densities) for joint in p.joints),
-        *(("average", keys, p.joints, (keys,)) for keys in p.densities),
-        ("average", ALL, p.joints, p.densities),
-    ]
-    for (joint, keys, joints, densities), rival in itertools.product(groups, p.rivals):
-        parts = [cells[j, k, rival] for j in joints for k in densities]
-        values = [mean_of([part[seed] for part in parts]) for seed in range(p.seeds)]
-        about = {"joint": joint, "keys": keys, "method": rival.name, "options": dict(rival.options)}
-        rows.append(record(values, p, **about) | {TIME: times[rival]})
-    return rows
-
-
-def mean_of(parts: list[dict[str, float]]) -> dict[str, float]:
-    """Mean of every column; of the residual the largest."""
-    row = {name: float(np.mean([part[name] for part in parts])) for name in parts[0]}
-    return row | {"residual": max(part["residual"] for part in parts)}
-
-
 def main() -> None:
     """Measure, print the table, and write the records and the picture."""
     usual = Protocol()
-    parser = argparse.ArgumentParser(description="Every zero-shot method on one protocol.")
-    parser.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
-    parser.add_argument("--quick", action="store_true", help="minutes; wide intervals")
-    parser.add_argument("--clips", type=int, default=usual.clips, help="of a cell (default 128)")
-    parser.add_argument("--seeds", type=int, default=usual.seeds, help="default 4")
-    parser.add_argument("--steps", type=int, default=usual.steps, help="of sampling (default 25)")
+    parser = options_of(
+        "Every zero-shot method on one protocol.", FOLDER, usual.clips, usual.seeds, usual.steps
+    )
     parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: all six")
     parser.add_argument("--methods", nargs="+", help="names in the table (default: all)")
-    parser.add_argument("--device", default="cpu", help="of the network: cpu or cuda")
-    parser.add_argument("--folder", type=Path, default=FOLDER, help="for results as they are made")
-    parser.add_argument("--out", type=Path, help="folder for results/ and pictures/")
     options = parser.parse_args()
     rivals = tuple(r for r in usual.rivals if options.methods is None or r.name in options.methods)
     counts = (options.clips, options.seeds, options.steps)
@@ -246,11 +239,7 @@ def main() -> None:
     rows = run(prior, protocol, options.folder, options.device)
     print(table(rows))
     if options.out:
-        for part in ("results", "pictures"):
-            (options.out / part).mkdir(parents=True, exist_ok=True)
-        text = json.dumps({"prior": fingerprint(prior), "rows": rows}, indent=1)
-        (options.out / "results/control.json").write_text(text + "\n")
-        figure(rows, options.out / "pictures/control.png")
+        published("control", prior, rows, figure, options.out)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from projflow_lite.studies.cells import ALL
+from projflow_lite.studies.claims import DATA, TIME
 from projflow_lite.studies.control_paper import SOURCES
-from projflow_lite.studies.control_words import ALL, DATA, TIME
 from projflow_lite.studies.posterior_figure import (
     BLUE,
     GREEN,
@@ -100,20 +101,24 @@ def draw_densities(axes: Any, rows: list[dict[str, Any]], score: str, data: dict
     few_ticks(axes.yaxis)
 
 
-def draw_times(axes: Any, rows: list[dict[str, Any]]) -> None:
+def draw_times(axes: Any, rows: list[dict[str, Any]], looks: dict[str, Any] = LOOKS) -> None:
     """What every method costs."""
     rows = sorted((row for row in rows if row["method"] != "no wish"), key=lambda row: -row[TIME])
     names = [row["method"] for row in rows]
-    axes.barh(names, [row[TIME] for row in rows], color=[look(name)[0] for name in names])
+    axes.barh(names, [row[TIME] for row in rows], color=[look(name, looks)[0] for name in names])
     axes.set(xscale="log", title="Time", xlabel="multiple of a sample without a wish")
     few_ticks(axes.xaxis)
 
 
 def few_ticks(axis: Any) -> None:
-    """Numbers 1, 2 and 5 of every decade on a logarithmic axis, without powers of ten."""
+    """Numbers 1, 2 and 5 of a decade on a logarithmic axis, without powers of ten.
+
+    Of many decades 1 alone.
+    """
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    low, high = axis.get_view_interval()
+    axis.set_major_locator(LogLocator(subs=(1, 2, 5) if high < 100 * low else (1,)))
     axis.set_major_formatter(StrMethodFormatter("{x:g}"))
     axis.set_minor_formatter(NullFormatter())
 
@@ -126,6 +131,6 @@ def band(axes: Any, data: dict[str, Any], score: str) -> None:
     axes.axhline(cell["mean"], color=GREY, lw=1, label="held-out data")
 
 
-def look(method: str) -> tuple[str, str, str]:
+def look(method: str, looks: dict[str, Any] = LOOKS) -> tuple[str, str, str]:
     """Colour, mark and line of a method."""
-    return LOOKS.get(method, (GREY, "x", "-"))
+    return looks.get(method, (GREY, "x", "-"))

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from projflow_lite.studies.claims import Printed
+from projflow_lite.studies.control_ways import EDIT
+
 PRINTED = (
     "FID", "R top 3", "diversity", "skating gmd", "trajectory error", "location error",
     "average error",
 )  # fmt: skip
 """Columns of its tables."""
+
+EDITED = ("FID", "R top 1", "R top 2", "R top 3", "matching", "diversity")
+"""Columns of the rows on editing the upper body."""
 
 SOURCES = {"euclid": "Table 6", "no fresh noise": "Table 6", "plain masking": "Table 6"}
 """Where the numbers of a method are printed, if not in Table 7."""
@@ -69,7 +75,13 @@ the densities 1, 2, 5, 49 and 196 of 196 frames. Imputation is MDM's row. All is
 average trajectory error of DNO too, where the mean of the six joints would be 0.0063."""
 
 
-def printed(joint: str, method: str, column: str) -> float | None:
-    """A number of the paper, or None."""
-    row = PAPER.get(joint, {}).get(method)
-    return None if row is None or column not in PRINTED else row[PRINTED.index(column)]
+EDITS: dict[str, dict[str, tuple[float | None, ...]]] = {
+    EDIT: {
+        "imputation": (1.918, 0.359, 0.556, 0.654, 4.793, 9.21),
+        "projflow": (0.087, 0.501, 0.69, 0.787, 3.319, 10.571),
+    },
+}
+"""The zero-shot rows of Tables 1 and 7 on editing, in the order of `EDITED`."""
+
+TABLES = Printed(PRINTED, PAPER, "Table 7", SOURCES)
+EDIT_TABLE = Printed(EDITED, EDITS, "Table 7", {})

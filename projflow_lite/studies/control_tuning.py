@@ -21,9 +21,9 @@ from tqdm.auto import tqdm
 
 from data_synth import held_out
 from projflow_lite.prior import Prior, load_prior
-from projflow_lite.studies.control import FOLDER, Protocol, mean_of, measured, run, table
-from projflow_lite.studies.control_ways import ABLATIONS, FREE, RIVALS, Rival, Task, elsewhere
-from projflow_lite.studies.fewer_steps import features_of, fingerprint, stored
+from projflow_lite.studies.cells import Rival, features_of, fingerprint, mean_of, stored
+from projflow_lite.studies.control import FOLDER, Protocol, measured, run, table
+from projflow_lite.studies.control_ways import ABLATIONS, FREE, RIVALS, Task, elsewhere
 from projflow_lite.studies.noise_reading import FRAMES
 
 NEAR = 0.05

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from dataclasses import fields
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,33 +14,14 @@ from numpy.typing import NDArray
 from data_synth import Clips
 from projflow_lite.constraints import pin
 from projflow_lite.prior.model import Text
+from projflow_lite.projection import kinematic_joint_metric
 from projflow_lite.samplers import METHODS, GuideSettings, Imputation, euler, flow_times
 from projflow_lite.samplers.projflow import Velocity
-from projflow_lite.skeleton import joint_index
+from projflow_lite.skeleton import LOWER_BODY, joint_indices
+from projflow_lite.studies.cells import Rival
 
 BATCH = 64
 """Clips that are made at once. They share the frames of their keyframes, not the targets."""
-
-
-class Rival(NamedTuple):
-    """One method with its settings.
-
-    Attributes:
-        name: in tables.
-        method: a name of `projflow_lite.samplers.METHODS`; "" for a sample without a wish.
-        options: what differs from the method's defaults; of ProjFlow also "metric", "guides" and
-            the guides' "c0".
-    """
-
-    name: str
-    method: str
-    options: tuple[tuple[str, Any], ...] = ()
-
-    @property
-    def spelled(self) -> str:
-        """Name and settings, for a file's name."""
-        parts = [self.name, *(f"{key}={value}" for key, value in self.options)]
-        return "_".join(parts).replace(", ", "-").replace(" ", "-")
 
 
 FREE = Rival("no wish", "")
@@ -70,11 +52,15 @@ ABLATIONS = (
 QUICK_DNO = Rival("dno", "dno", (("iterations", 10), ("solver_steps", 5)))
 
 
+EDIT = "upper-body edit"
+"""Pelvis and legs stay where they are in every frame, and the prompt moves the rest."""
+
+
 class Task(NamedTuple):
-    """What is asked for: one joint, at some keyframes.
+    """What is asked for: one joint, or the lower body, at some keyframes.
 
     Attributes:
-        joint: its name.
+        joint: its name, or `EDIT`.
         keys: number of keyframes.
         frames: of the motions.
     """
@@ -82,6 +68,11 @@ class Task(NamedTuple):
     joint: str
     keys: int
     frames: int
+
+    @property
+    def joints(self) -> list[int]:
+        """Indices of the joints that are asked for."""
+        return joint_indices(LOWER_BODY if self.joint == EDIT else [self.joint], "control")
 
     def keyframes(self, seed: int) -> NDArray[np.int64]:
         """Frames of the keyframes, drawn without repetition, rising."""
@@ -123,12 +114,12 @@ def make(
         steps: of sampling.
         seed: of keyframes and noise.
     """
-    joint = joint_index(task.joint, "control")
+    joints = task.joints
     positions, targets = [], np.full(clips.positions.shape, np.nan)
     for start in range(0, len(clips.captions), BATCH):
         batch = slice(start, start + BATCH)
         frames = task.keyframes(10_000 * seed + start)
-        wanted = clips.positions[batch][:, frames, joint]
+        wanted = clips.positions[batch][:, frames[:, None], joints]
         generator = torch.Generator().manual_seed(10_000 * seed + start)
         x0 = noise_std * torch.randn(clips.positions[batch].shape, generator=generator)
         texts = clips.captions[batch]
@@ -137,7 +128,7 @@ def make(
                 velocity, noise_std, rival, (task, frames, wanted), x0, steps, generator, texts
             )
         positions.append(x1.numpy())
-        targets[batch.start : batch.start + len(x0), frames, joint] = wanted
+        targets[batch, frames[:, None], joints] = wanted
     return Made(np.concatenate(positions), targets)
 
 
@@ -152,16 +143,20 @@ def sampled(
     texts: Text,
 ) -> torch.Tensor:
     """One batch of one rival."""
-    times = flow_times(steps)
+    options = dict(rival.options)
+    times = flow_times(options.pop("steps", steps))
     if not rival.method:
         return euler(velocity, x0, times, texts)
-    options = {key: value for key, value in rival.options if key not in OF_AIM}
+    options = {key: value for key, value in options.items() if key not in OF_AIM}
     return METHODS[rival.method].sampler(
         velocity, aim(rival, *wanted), x0, times, generator, texts, noise_std=noise_std, **options
     )
 
 
-OF_AIM = ("metric", "guides", "c0")
+OF_GUIDES = tuple(field.name for field in fields(GuideSettings))
+OF_METRIC = ("w_kin", "ridge")
+OF_AIM = ("metric", "guides", *OF_GUIDES, *OF_METRIC)
+"""Options of ProjFlow that are not the sampler's: they say what it asks for in every step."""
 
 
 def aim(rival: Rival, task: Task, frames: NDArray, targets: NDArray) -> Any:
@@ -169,21 +164,34 @@ def aim(rival: Rival, task: Task, frames: NDArray, targets: NDArray) -> Any:
 
     Args:
         rival: the method and its settings.
-        task: the joint and the length of the motions.
+        task: the joints and the length of the motions.
         frames: ``(keys,)`` of the keyframes, rising.
-        targets: ``(clips, keys, 3)``, metres.
+        targets: ``(clips, keys, 3)`` or ``(clips, keys, joints, 3)``, metres.
     """
-    options = dict(rival.options)
-    guides = GuideSettings(c0=options["c0"]) if "c0" in options else options.get("guides", True)
-    metric = options.get("metric", "kinematic")
-    one = pin(task.joint, frames, targets[0])
+    wanted = targets.reshape(len(targets), len(frames), len(task.joints), 3)
+    one = pin(task.joints, frames, wanted[0])
+    metric, guides = metric_of(rival), guides_of(rival)
     asked = METHODS[rival.method].aim(one, task.frames, metric, torch.float32, guides)
     y = targets.reshape(len(targets), -1)
     if not isinstance(asked, Imputation):
         return asked.aimed_at(y)
     values = asked.values.expand(len(targets), *asked.values.shape).clone()
-    values[:, asked.mask] = torch.as_tensor(y, dtype=values.dtype)  # both by frame, then by axis
+    values[:, asked.mask] = torch.as_tensor(y, dtype=values.dtype)  # by frame, joint and axis
     return Imputation(asked.mask, values)
+
+
+def metric_of(rival: Rival) -> Any:
+    """The metric that a rival projects with."""
+    options = dict(rival.options)
+    weights = {name: options[name] for name in OF_METRIC if name in options}
+    return kinematic_joint_metric(**weights) if weights else options.get("metric", "kinematic")
+
+
+def guides_of(rival: Rival) -> bool | GuideSettings:
+    """The guides that help a rival."""
+    options = dict(rival.options)
+    constants = {name: options[name] for name in OF_GUIDES if name in options}
+    return GuideSettings(**constants) if constants else options.get("guides", True)
 
 
 def time_ratio(work: Callable[[], Any], reference: Callable[[], Any], turns: int = 3) -> float:

@@ -14,12 +14,9 @@ it all, ``python -m projflow_lite.studies.fewer_steps --out book``.
 from __future__ import annotations
 
 import argparse
-import hashlib
-import json
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,13 +24,15 @@ from tqdm.auto import tqdm
 
 from data_synth import Clips, held_out
 from projflow_lite.prior import Prior, load_prior
-from projflow_lite.scores import (
-    frechet_distance,
-    interval,
-    kinetic_features,
-    load_evaluator,
-    pose_features,
-    score_clips,
+from projflow_lite.scores import frechet_distance, score_clips
+from projflow_lite.studies.cells import (
+    Features,
+    features_of,
+    fingerprint,
+    over_seeds,
+    published,
+    stored,
+    write,
 )
 from projflow_lite.studies.fewer_steps_figure import figure
 from projflow_lite.studies.fewer_steps_ways import FINE, Way, all_ways, make
@@ -45,14 +44,6 @@ __all__ = ["figure", "run", "sentences", "table"]
 FOLDER = Path("runs/fewer-steps")
 REFERENCE, WISHED, OTHERS = 1000, 2000, 3000
 """Seeds of held-out clips: to compare with, to ask for, and to show what data itself scores."""
-
-
-class Features(NamedTuple):
-    """What Fréchet distances compare, each ``(clips, features)``."""
-
-    kinetic: NDArray
-    pose: NDArray
-    points: NDArray
 
 
 def run(
@@ -125,35 +116,12 @@ def score(positions: NDArray, captions: list[str], reference: Features) -> dict[
     return {name: row[name] for name in COLUMNS if name != OFF_FLOW}
 
 
-def features_of(positions: NDArray) -> Features:
-    """Features of a set of clips ``(clips, frames, 22, 3)``."""
-    points = load_evaluator().embed_motion(positions)
-    return Features(kinetic_features(positions), pose_features(positions), points)
-
-
 def fine_motion(prior: Prior, wished: Clips, seed: int, place: Path) -> NDArray:
     """Where many small steps lead without a wish, from the file if there is one."""
     path = place / f"fine-{seed}.npy"
     if not path.exists():
         write(path, lambda file: np.save(file, make(prior, FINE, wished, seed)[0]))
     return np.load(path)
-
-
-def stored(path: Path, measure: Callable[[], dict[str, float]]) -> dict[str, float]:
-    """A result from its file, or measured and stored."""
-    if not path.exists():
-        text = json.dumps(measure(), indent=1)
-        write(path, lambda file: file.write(text.encode()))
-    return json.loads(path.read_text())
-
-
-def write(path: Path, fill: Callable[[Any], Any]) -> None:
-    """Write a file under another name first: what is there under its own name is whole."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    half = path.with_suffix(".half")
-    with half.open("wb") as file:
-        fill(file)
-    half.replace(path)
 
 
 def name_of(way: Way, seed: int) -> str:
@@ -163,26 +131,12 @@ def name_of(way: Way, seed: int) -> str:
     return f"{name.replace(', ', '-').replace(' ', '-')}/seed-{seed}.json"
 
 
-def fingerprint(what: Prior | Features) -> str:
-    """Tells one prior's weights, or the features of one evaluator and data set, from others."""
-    if isinstance(what, Features):
-        parts = [np.round(part, 3).astype(np.float32) for part in what]
-    else:
-        parts = [tensor.cpu().numpy() for tensor in what.state_dict().values()]
-    return hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest()[:8]
-
-
 def record(way: Way | None, values: list[dict[str, float]], clips: int) -> dict[str, Any]:
     """One row: how it was sampled and what it scored."""
     about: dict[str, Any] = {"task": DATA} if way is None else {"task": way.task} | way._asdict()
     if way is not None:
         about["calls"] = values[0]["calls"]
-    scores = {}
-    for name in (name for name in COLUMNS if name in values[0]):
-        column = [row[name] for row in values]
-        mean, half = interval(column)
-        scores[name] = {"mean": mean, "half width": half, "values": column}
-    return about | {"clips": clips, "seeds": len(values), "scores": scores}
+    return about | {"clips": clips, "seeds": len(values), "scores": over_seeds(values, COLUMNS)}
 
 
 def main() -> None:
@@ -201,11 +155,7 @@ def main() -> None:
     rows = run(prior, options.quick, options.clips, options.seeds, options.folder)
     print(table(rows))
     if options.out:
-        records = {"prior": fingerprint(prior), "rows": rows}
-        for part in ("results", "pictures"):
-            (options.out / part).mkdir(parents=True, exist_ok=True)
-        (options.out / "results/fewer-steps.json").write_text(json.dumps(records, indent=1) + "\n")
-        figure(rows, options.out / "pictures/fewer-steps.png")
+        published("fewer-steps", prior, rows, figure, options.out)
 
 
 if __name__ == "__main__":

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 import torch
+from untrained import small_prior
 
 from data_synth import held_out
-from projflow_lite.prior import Prior
-from projflow_lite.prior.text import Vocabulary
 from projflow_lite.samplers import flow_times
 from projflow_lite.samplers.euler import euler
 from projflow_lite.skeleton import JOINTS
@@ -19,15 +18,6 @@ FEW = [
     Way("quadratic", "Euler", 2, "pelvis", 1, *DEFAULT),
     Way("quadratic", "multistep", 2, "pelvis", 1, *DEFAULT),
 ]  # fmt: skip
-
-
-def small_prior(seed=0):
-    """A network that has learnt nothing, but where joints usually are."""
-    torch.manual_seed(seed)
-    clips = held_out(680, 60, 1)
-    mean = torch.from_numpy(clips.positions.mean((0, 1)))
-    sizes = {"widths": (8, 8), "condition": 16}
-    return Prior(Vocabulary.of(clips.captions), mean, 0.76, (20, 196), sizes)
 
 
 @pytest.fixture(scope="module")

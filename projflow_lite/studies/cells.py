@@ -1,0 +1,229 @@
+"""What comparisons have in common: cells stored as they are made, and rows over seeds and cells.
+
+A cell is one method on one task with one seed. A run that was interrupted goes on with the cells
+that are missing, and a run with more seeds takes those that are there.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import itertools
+import json
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from tqdm.auto import tqdm
+
+from projflow_lite.prior import Prior
+from projflow_lite.scores import (
+    frechet_distance,
+    interval,
+    kinetic_features,
+    load_evaluator,
+    pose_features,
+    score_clips,
+)
+
+
+class Features(NamedTuple):
+    """What Fréchet distances compare, each ``(clips, features)``."""
+
+    kinetic: NDArray
+    pose: NDArray
+    points: NDArray
+
+
+def features_of(positions: NDArray) -> Features:
+    """Features of a set of clips ``(clips, frames, 22, 3)``."""
+    points = load_evaluator().embed_motion(positions)
+    return Features(kinetic_features(positions), pose_features(positions), points)
+
+
+def fingerprint(what: torch.nn.Module | Features) -> str:
+    """Tells one network's weights, or the features of one evaluator and data set, from others."""
+    if isinstance(what, Features):
+        parts = [np.round(part, 3).astype(np.float32) for part in what]
+    else:
+        parts = [tensor.cpu().numpy() for tensor in what.state_dict().values()]
+    return hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest()[:8]
+
+
+def quality(
+    positions: NDArray, captions: list[str], reference: Features, seed: int
+) -> dict[str, float]:
+    """Every score that needs no wish, over a whole set of clips; see `score_clips`."""
+    own = features_of(positions)
+    row = score_clips(positions, captions, seed=seed)
+    row["kinetic distance"] = frechet_distance(own.kinetic, reference.kinetic)
+    row["FID"] = frechet_distance(own.points, reference.points)
+    return row
+
+
+def stored(path: Path, measure: Callable[[], dict[str, float]]) -> dict[str, float]:
+    """A result from its file, or measured and stored."""
+    if not path.exists():
+        text = json.dumps(measure(), indent=1)
+        write(path, lambda file: file.write(text.encode()))
+    return json.loads(path.read_text())
+
+
+def write(path: Path, fill: Callable[[Any], Any]) -> None:
+    """Write a file under another name first: what is there under its own name is whole."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    half = path.with_suffix(".half")
+    with half.open("wb") as file:
+        fill(file)
+    half.replace(path)
+
+
+class Rival(NamedTuple):
+    """One method with its settings.
+
+    Attributes:
+        name: in tables.
+        method: a name of `projflow_lite.samplers.METHODS`, or one that the study knows; "" for a
+            sample without a wish.
+        options: what differs from the method's defaults; of ProjFlow also "metric", "guides", the
+            constants of either, and "steps", see `control_ways.aim`.
+    """
+
+    name: str
+    method: str
+    options: tuple[tuple[str, Any], ...] = ()
+
+    @property
+    def spelled(self) -> str:
+        """Name and settings, for a file's name."""
+        parts = [self.name, *(f"{key}={value}" for key, value in self.options)]
+        return "_".join(parts).replace(", ", "-").replace(" ", "-")
+
+
+class Cell(NamedTuple):
+    """One method on one task, for all seeds.
+
+    Attributes:
+        joint: what is asked for.
+        keys: in how many frames; `ALL` where a study has but one answer to that.
+        rival: the method.
+    """
+
+    joint: str
+    keys: int | str
+    rival: Rival
+
+    @property
+    def path(self) -> Path:
+        """Folder of the results of all seeds."""
+        return Path(self.rival.spelled) / f"{self.joint}-{self.keys}".replace(" ", "-")
+
+
+ALL = "all"
+
+Scores = dict[str, float]
+
+
+def filled(
+    place: Path,
+    cells: Sequence[Cell],
+    seeds: int,
+    measure: Callable[[Cell, int], Scores],
+    progress: bool = True,
+) -> dict[Cell, list[Scores]]:
+    """The results of all cells, seed after seed: from their files, or measured and stored.
+
+    Args:
+        place: folder of one prior, data and size.
+        cells: what is measured.
+        seeds: how often.
+        measure: of a cell and a seed.
+        progress: whether to show a bar.
+    """
+    found: dict[Cell, list[Scores]] = {cell: [] for cell in cells}
+    with tqdm(total=seeds * len(cells), disable=not progress, unit="cell") as bar:
+        for seed, cell in itertools.product(range(seeds), cells):
+            bar.set_description(f"seed {seed}, {cell.joint}, {cell.keys}, {cell.rival.name}")
+            path = place / cell.path / f"seed-{seed}.json"
+            found[cell].append(stored(path, partial(measure, cell, seed)))
+            bar.update(1)
+    return found
+
+
+class Group(NamedTuple):
+    """A row of the table for every method: its name, and the tasks that it is the mean of."""
+
+    joint: str
+    keys: int | str
+    parts: tuple[tuple[str, int | str], ...]
+
+
+def summarised(
+    found: dict[Cell, list[Scores]],
+    groups: Sequence[Group],
+    rivals: Sequence[Rival],
+    columns: Sequence[str],
+    about: dict[str, Any],
+) -> list[dict[str, Any]]:
+    """A record for every group and method; means are taken seed by seed."""
+    rows = []
+    for group, rival in itertools.product(groups, rivals):
+        parts = [found[Cell(joint, keys, rival)] for joint, keys in group.parts]
+        values = [mean_of(list(seed)) for seed in zip(*parts, strict=True)]
+        own = {"joint": group.joint, "keys": group.keys, "method": rival.name}
+        extent = about | {"options": dict(rival.options), "seeds": len(values)}
+        rows.append(own | extent | {"scores": over_seeds(values, columns)})
+    return rows
+
+
+def over_seeds(values: Sequence[Scores], columns: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Every score with its ``mean``, its ``half width`` (95 %) and the ``values`` of all seeds."""
+    scores = {}
+    for name in (name for name in columns if name in values[0]):
+        column = [row[name] for row in values]
+        mean, half = interval(column)
+        scores[name] = {"mean": mean, "half width": half, "values": column}
+    return scores
+
+
+def mean_of(parts: list[Scores]) -> Scores:
+    """Mean of every column; of the residual the largest."""
+    row = {name: float(np.mean([part[name] for part in parts])) for name in parts[0]}
+    if "residual" in row:
+        row["residual"] = max(part["residual"] for part in parts)
+    return row
+
+
+def published(
+    name: str, prior: Prior, rows: list[dict[str, Any]], draw: Callable[[Any, Path], Any], out: Path
+) -> None:
+    """Write the records to ``results/`` and the picture to ``pictures/`` of a folder."""
+    for part in ("results", "pictures"):
+        (out / part).mkdir(parents=True, exist_ok=True)
+    text = json.dumps({"prior": fingerprint(prior), "rows": rows}, indent=1)
+    (out / f"results/{name}.json").write_text(text + "\n")
+    draw(rows, out / f"pictures/{name}.png")
+
+
+def options_of(description: str, folder: Path, clips: int, seeds: int, steps: int) -> Any:
+    """A parser with the options that every comparison has."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
+    parser.add_argument("--quick", action="store_true", help="minutes; wide intervals")
+    parser.add_argument("--clips", type=int, default=clips, help=f"of a cell (default {clips})")
+    parser.add_argument("--seeds", type=int, default=seeds, help=f"default {seeds}")
+    parser.add_argument("--steps", type=int, default=steps, help=f"of sampling (default {steps})")
+    parser.add_argument("--device", default="cpu", help="of the network: cpu or cuda")
+    parser.add_argument("--folder", type=Path, default=folder, help="for results as they are made")
+    parser.add_argument("--out", type=Path, help="folder for results/ and pictures/")
+    return parser
+
+
+def check_extent(who: str, clips: int, seeds: int) -> None:
+    """Refuse too few clips for a batch of R-precision, or too few seeds for an interval."""
+    if clips < 32 or seeds < 2:
+        raise ValueError(f"{who}: at least 32 clips and 2 seeds, not {clips} and {seeds}")

@@ -1,0 +1,233 @@
+"""From a drawing to a motion: ProjFlow's Table 2.
+
+Captions of held-out clips, a drawing of their first pose, and drawings of the paths of their
+joints, seen by a known camera. In the row "average" one path at a time is drawn and the six joints
+have equal weight; in "cross" those of one to six joints at once. How near does a method come, in
+the picture and in space, and what does the motion look like?
+
+Three baselines are Sketch2Anim's, made anew and smaller, see the files ``lifting_retrieval.py``,
+``lifting_depths.py`` and ``lifting_direct.py``; learning takes about two minutes. Sketch2Anim
+itself is not here: it is a trained model of its own. All other methods are those of the study of
+control, but for those that overwrite coordinates.
+
+A full run takes many hours on a laptop, so every cell is stored as it is made.
+``python -m projflow_lite.studies.lifting --help`` has all options, a graphics card among them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import torch
+from numpy.typing import NDArray
+
+from data_synth import Clips, held_out
+from projflow_lite.prior import Prior, load_prior
+from projflow_lite.samplers.projflow import Velocity
+from projflow_lite.studies.cells import (
+    ALL,
+    Cell,
+    Features,
+    Group,
+    Rival,
+    check_extent,
+    features_of,
+    filled,
+    fingerprint,
+    options_of,
+    over_seeds,
+    published,
+    quality,
+    stored,
+    summarised,
+)
+from projflow_lite.studies.claims import DATA, TIME
+from projflow_lite.studies.control_ways import FREE, elsewhere, time_ratio
+from projflow_lite.studies.lifting_figure import figure
+from projflow_lite.studies.lifting_pictures import CROSS, JOINTS, Errors
+from projflow_lite.studies.lifting_ways import (
+    BASELINES,
+    RIVALS_OF_LIFTING,
+    Effort,
+    Learnt,
+    Made,
+    make,
+    school,
+)
+from projflow_lite.studies.lifting_words import COLUMNS, sentences, table
+from projflow_lite.studies.noise_reading import FRAMES
+
+__all__ = ["figure", "run", "sentences", "table"]
+
+FOLDER = Path("runs/lifting")
+REFERENCE, WISHED, OTHERS = 9000, 10_000, 11_000
+"""Seeds of held-out clips: to compare with, to draw, and to show what data itself scores."""
+
+TIMED = "left_wrist", 16
+"""What is timed: this task, on so many clips."""
+
+
+class Protocol(NamedTuple):
+    """How much is measured.
+
+    Attributes:
+        clips: motions of a cell, that is of a method, task and seed.
+        seeds: each with other captions, cameras and noise, the same ones for every method.
+        steps: of sampling.
+        joints: whose paths are drawn, one at a time.
+        rivals: the methods.
+        effort: how much the baselines may learn.
+    """
+
+    clips: int = 128
+    seeds: int = 4
+    steps: int = 25
+    joints: tuple[str, ...] = JOINTS
+    rivals: tuple[Rival, ...] = RIVALS_OF_LIFTING
+    effort: Effort = Effort()
+
+
+CHEAP = ("no wish", "projflow", "ddnm", "flowdps", "dps", *(rival.name for rival in BASELINES))
+QUICK = Protocol(
+    32, 3, 10, ("pelvis", "left_wrist"),
+    tuple(rival for rival in RIVALS_OF_LIFTING if rival.name in CHEAP), Effort(1024, 300, 300),
+)  # fmt: skip
+"""A first look: its intervals are wide, two joints stand for six, and the baselines learn less."""
+
+
+def run(
+    prior: Prior,
+    protocol: Protocol | None = None,
+    folder: str | Path = FOLDER,
+    device: str = "cpu",
+    progress: bool = True,
+) -> list[dict[str, Any]]:
+    """Measure every method; see the module's docstring.
+
+    Args:
+        prior: what makes motions.
+        protocol: how much is measured; None for the whole of it.
+        folder: where results and what the baselines learnt are stored; results of another prior,
+            evaluator, data, extent or effort lie apart in it. After a change of a method, take
+            another folder.
+        device: where the prior's network is computed, "cpu" or "cuda".
+        progress: whether to show a bar.
+
+    Returns:
+        One record a row, held-out data first: ``joint`` (the task), ``method``, ``options`` and
+        ``scores``, each with its ``mean``, its ``half width`` (95 %) and the ``values`` of all
+        seeds. The task is a joint, "average" over joints, or "cross".
+
+    Raises:
+        ValueError: for fewer than 32 clips, or fewer than 2 seeds.
+    """
+    p = protocol or Protocol()
+    check_extent("lifting", p.clips, p.seeds)
+    reference = features_of(held_out(16 * p.clips, FRAMES, REFERENCE).positions)
+    extent = f"{p.clips}-{p.steps}-{p.effort.spelled}"
+    place = Path(folder) / f"{fingerprint(prior)}-{fingerprint(reference)}-{extent}"
+    learnt = school(FRAMES, p.effort, Path(folder))
+    velocity, noise_std = elsewhere(prior, device), prior.noise_std
+    wished = cache(lambda seed: held_out(p.clips, FRAMES, WISHED + seed))
+
+    def measure(cell: Cell, seed: int) -> dict[str, float]:
+        return measured(velocity, noise_std, cell, wished(seed), p.steps, seed, learnt, reference)
+
+    times = {}
+    for rival in p.rivals:
+        clock = partial(timed, velocity, noise_std, rival, p.steps, learnt)
+        times[rival.name] = stored(place / rival.spelled / f"time-{device}.json", clock)[TIME]
+    cells = [Cell(task, ALL, rival) for task in (*p.joints, CROSS) for rival in p.rivals]
+    found = filled(place, cells, p.seeds, measure, progress)
+    rows = summarised(found, groups_of(p), p.rivals, COLUMNS, {"clips": p.clips, "steps": p.steps})
+    return [data_row(p, reference), *(row | {TIME: times[row["method"]]} for row in rows)]
+
+
+def groups_of(p: Protocol) -> list[Group]:
+    """A row for every joint, for all of them, and for several at once."""
+    return [
+        *(Group(joint, ALL, ((joint, ALL),)) for joint in p.joints),
+        Group("average", ALL, tuple((joint, ALL) for joint in p.joints)),
+        Group(CROSS, ALL, ((CROSS, ALL),)),
+    ]
+
+
+def data_row(p: Protocol, reference: Features) -> dict[str, Any]:
+    """What other held-out clips score against the reference."""
+    parts = []
+    for seed in range(p.seeds):
+        others = held_out(p.clips, FRAMES, OTHERS + seed)
+        parts.append(score(others.positions, others, None, reference, seed))
+    about = {"joint": ALL, "keys": ALL, "method": DATA, "options": {}}
+    extent = {"clips": p.clips, "seeds": p.seeds, "steps": p.steps}
+    return about | extent | {"scores": over_seeds(parts, COLUMNS)}
+
+
+def measured(
+    velocity: Velocity,
+    noise_std: float | torch.Tensor,
+    cell: Cell,
+    wished: Clips,
+    steps: int,
+    seed: int,
+    learnt: Learnt,
+    reference: Features,
+) -> dict[str, float]:
+    """One cell: make the motions of one seed, and score them."""
+    made = make(velocity, noise_std, cell.rival, cell.joint, wished, steps, seed, learnt)
+    return score(made.positions, wished, made.errors, reference, seed)
+
+
+def score(
+    positions: NDArray, clips: Clips, errors: Errors | None, reference: Features, seed: int
+) -> dict[str, float]:
+    """The columns of the table, each over a whole set of clips; data itself has no errors."""
+    row = quality(positions, clips.captions, reference, seed)
+    if errors is not None:
+        row |= {
+            "MPJPE-2D": float(errors.pose_2d.mean()),
+            "MPJPE-3D": float(errors.pose_3d.mean()),
+            "average error 2D": float(errors.path_2d.mean()),
+            "average error 3D": float(errors.path_3d.mean()),
+            "residual": float(errors.residual.max()),
+        }
+    return {name: row[name] for name in COLUMNS if name in row}
+
+
+def timed(
+    velocity: Velocity, noise_std: float | torch.Tensor, rival: Rival, steps: int, learnt: Learnt
+) -> dict[str, float]:
+    """Seconds of a method over those of a sample without a wish, taken in turns."""
+    task, count = TIMED
+    clips = held_out(count, FRAMES, WISHED)
+
+    def work(way: Rival) -> Callable[[], Made]:
+        return partial(make, velocity, noise_std, way, task, clips, steps, 0, learnt)
+
+    return {TIME: 1.0 if rival == FREE else time_ratio(work(rival), work(FREE))}
+
+
+def main() -> None:
+    """Measure, print the table, and write the records and the picture."""
+    usual = Protocol()
+    parser = options_of(
+        "From a drawing to a motion.", FOLDER, usual.clips, usual.seeds, usual.steps
+    )
+    parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: all six")
+    parser.add_argument("--methods", nargs="+", help="names in the table (default: all)")
+    options = parser.parse_args()
+    rivals = tuple(r for r in usual.rivals if options.methods is None or r.name in options.methods)
+    counts = (options.clips, options.seeds, options.steps)
+    protocol = QUICK if options.quick else Protocol(*counts, tuple(options.joints), rivals)
+    prior = load_prior(options.prior)
+    rows = run(prior, protocol, options.folder, options.device)
+    print(table(rows))
+    if options.out:
+        published("lifting", prior, rows, figure, options.out)
+
+
+if __name__ == "__main__":
+    main()
