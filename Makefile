@@ -19,8 +19,13 @@ help:
 	@sed -n '1,8s/^# \{0,1\}//p' Makefile
 	@echo "also: make book (the notebooks as a web site), make check (ruff and mypy), make hooks (for contributors), make pictures, make clean"
 
+# At its first start JupyterLab asks whether it may fetch news: not here.
+NO_NEWS := {"@jupyterlab/apputils-extension:notification": {"fetchNews": "false", "checkForUpdates": false}}
+
 # JupyterLab refuses to run as root, as in most containers, unless it is told to.
 lab: $(VENV)/.lab
+	@mkdir -p $(VENV)/share/jupyter/lab/settings
+	@echo '$(NO_NEWS)' > $(VENV)/share/jupyter/lab/settings/overrides.json
 	$(BIN)/jupyter lab --LabApp.default_url=/lab/tree/$(NOTEBOOK) $(if $(filter 0,$(shell id -u)),--allow-root) $(ARGS)
 
 test: $(VENV)/.test browser check

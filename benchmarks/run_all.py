@@ -1,6 +1,6 @@
 """Run every benchmark and write its results into README.md: nothing there was typed by hand.
 
-python benchmarks/run_all.py              some ten minutes on an idle machine
+python benchmarks/run_all.py              some fifteen minutes on an idle machine
 python benchmarks/run_all.py --quick      a minute, leaves README.md alone
 python benchmarks/run_all.py --only sampling one_step
 """
@@ -17,7 +17,7 @@ from typing import Any
 import measuring
 
 HERE = Path(__file__).parent
-NAMES = ("projection", "memory_pass", "sampling", "one_step", "scaling", "memory")
+NAMES = ("projection", "memory_pass", "sampling", "one_step", "scaling", "memory", "latency")
 BEGIN = "<!-- results, written by run_all.py -->"
 
 

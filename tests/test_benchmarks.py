@@ -4,6 +4,7 @@ import importlib
 import json
 import math
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -102,6 +103,26 @@ def test_bars_are_judged_by_the_dearest_wish(benchmark):
     first, second, live = sampling.bars(rows)
     assert (first.met, second.met, live.met) == (False, True, False)
     assert list(sampling.wishes())[1] in first.what
+
+
+def test_what_a_move_takes_is_judged_beside_its_sampling(benchmark):
+    latency = benchmark("latency")
+    rows = [
+        latency.summary("viewer, scrub", [40.0, 60.0, 10.0]),
+        latency.summary("pose editor, drag, sampling", [340.0, 440.0, 240.0])
+        | latency.beside_sampling([340.0, 440.0, 240.0], [300.0, 300.0, 200.0]),
+    ]
+    scrub, drag = latency.bars(rows)
+    assert (scrub.measured, scrub.limit, scrub.met) == (40.0, 50.0, True)
+    assert (drag.measured, drag.limit, drag.met) == (40.0, 50.0, True)
+    assert rows[0]["90 %, ms"] == pytest.approx(56.0)
+    assert rows[1]["median / sampling"] == pytest.approx(340 / 300)
+
+
+def test_moves_go_to_places_far_from_the_one_before(benchmark):
+    places = [benchmark("latency").spread(k) for k in range(40)]
+    assert all(0 <= place < 1 for place in places)
+    assert min(abs(a - b) for a, b in pairwise(places)) > 0.3
 
 
 def test_a_table_leaves_what_was_not_run_empty(benchmark):

@@ -65,7 +65,7 @@ class MethodExplorer(widgets.VBox):
             raise ValueError(f"MethodExplorer: no held-out clip is called '{prompt}'")
         self.prior, self.frames, self.batch = prior, frames, batch
         self.clip = Motion(clips.positions[places[0]].astype(float), clips.captions[places[0]])
-        self.outcomes: dict[str, Outcome] = {}
+        self._tried: dict[tuple[str, int], dict[str, Outcome]] = {}
         slim = {"description_width": "80px"}
         self.method = widgets.Dropdown(
             options=list(WAYS), value="projflow", description="method", style=slim,
@@ -76,8 +76,9 @@ class MethodExplorer(widgets.VBox):
             value="left_wrist", description="joint", style=slim, layout={"width": "220px"},
         )  # fmt: skip
         self.count = widgets.SelectionSlider(
-            options=COUNTS, value=5, description="keyframes", style=slim,
-            continuous_update=False, layout={"width": "300px"},
+            options=COUNTS, value=5, description="keyframes",
+            style={"description_width": "initial"}, continuous_update=False,
+            layout={"width": "300px"},
         )  # fmt: skip
         self.viewer = Viewer(height=380, trail=self.joint.value, layout={"flex": "1 1 330px"})
         self.table = widgets.HTML(layout={"flex": "1 1 380px"})
@@ -90,6 +91,11 @@ class MethodExplorer(widgets.VBox):
             control.observe(self._new_wish, "value")
         self.method.observe(self._show, "value")
         self._show()
+
+    @property
+    def outcomes(self) -> dict[str, Outcome]:
+        """What the methods tried so far made of the present wish, by name."""
+        return self._tried.setdefault((self.joint.value, self.count.value), {})
 
     @property
     def keyframes(self) -> NDArray[np.int64]:
@@ -141,7 +147,6 @@ class MethodExplorer(widgets.VBox):
         )
 
     def _new_wish(self, change: dict[str, Any]) -> None:
-        self.outcomes.clear()
         self.viewer.trail = self.joint.value
         self._show()
 
@@ -164,4 +169,4 @@ def table(outcomes: dict[str, Outcome], chosen: str) -> str:
         )
         label = html.escape(name)
         lines.append(f'<tr style="font-weight: {weight}"><td>{label}</td>{cells}</tr>')
-    return f"<table><tr><th></th>{head}</tr>{''.join(lines)}</table>"
+    return f'<table style="line-height: 1.4"><tr><th></th>{head}</tr>{"".join(lines)}</table>'

@@ -12,6 +12,7 @@ from projflow_lite.studies import posterior_worlds as worlds
 from projflow_lite.studies.posterior_figure import line_density
 from projflow_lite.studies.posterior_modes import energy_distance
 from projflow_lite.widgets import Board
+from projflow_lite.widgets.board_explorer import legs
 
 REACH = 2.4
 """Half the side of the plane that is shown."""
@@ -163,12 +164,6 @@ class PosteriorExplorer(widgets.VBox):
             "shares of the three modes: {} %, exact {} %. Energy distance to exact samples: "
             "{:.2f}, exact against exact {:.2f}.".format(*in_words, distance, floor)
         )
-
-
-def legs(start: NDArray, end: NDArray) -> NDArray:
-    """Straight lines from ``(n, 2)`` to ``(n, 2)`` as one line that lifts its pen between them."""
-    gap = np.full_like(start, np.nan)
-    return np.stack([start, end, gap], axis=1).reshape(-1, 2)
 
 
 def histogram(z: NDArray, bins: int = 40) -> NDArray:

@@ -13,6 +13,7 @@ const THICKNESS = { 4: 0.125, 5: 0.125, 7: 0.1, 8: 0.1, 10: 0.075, 11: 0.075, 18
 const SPINE_MIDDLE = 6;
 const HEAD_RADIUS = 0.105;
 const GRID = 0.5; // metres
+const APART = 0.6; // metres between two pelvises
 
 /** Ground lines every half metre, every metre stronger, under everything that moves. */
 function drawGround(ctx, camera, palette, box) {
@@ -193,6 +194,11 @@ function drawGhost(ctx, camera, palette, pose) {
   ctx.strokeStyle = palette.core;
   ctx.stroke();
   ctx.globalAlpha = 1;
+}
+
+/** Does a body stand apart from all others? A name above two that overlap would say nothing. */
+function isAlone(pose, poses) {
+  return poses.every((other) => other === pose || Math.hypot(other[0] - pose[0], other[2] - pose[2]) > APART);
 }
 
 /** Names above heads; one that would cover another moves up. */

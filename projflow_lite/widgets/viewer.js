@@ -53,6 +53,13 @@ function placesOf({ data, frames, joints, bodies, markers }) {
   return places;
 }
 
+/** What stands above the picture: the name of the first body, and below it those of the thin ones. */
+function captionOf(scene) {
+  if (!scene) return ["no motion to show"];
+  const thin = scene.names.slice(Math.max(1, scene.solid)).filter(Boolean);
+  return [scene.names[0], thin.length ? `thin: ${thin.join(", ")}` : ""].filter(Boolean);
+}
+
 /** "3.1e-08", as Python writes it; an ordinary number where the eye can see the difference. */
 function residualText(residual) {
   if (residual === 0 || residual >= 0.001) return residual === 0 ? "0" : residual.toFixed(3);
@@ -145,7 +152,7 @@ class ViewerView {
   loadScene() {
     const scene = readScene(this.model);
     this.scene = scene;
-    this.ui.note.textContent = scene ? scene.names[0] ?? "" : "no motion to show";
+    this.ui.note.replaceChildren(...captionOf(scene).map((line) => element("span", {}, line)));
     const names = scene ? scene.names.filter(Boolean).join("; ") : "";
     this.ui.canvas.setAttribute("aria-label", scene
       ? `Animated skeleton, ${scene.bodies} bod${scene.bodies > 1 ? "ies" : "y"}, ${scene.frames} frames. ${names} ` +
@@ -367,7 +374,7 @@ function drawScene(view, time) {
   for (const { pose, body } of order) {
     (body < scene.solid ? drawBody : drawGhost)(ctx, camera, palette, pose);
   }
-  const named = order.map(({ pose, body }) => ({ pose, name: body > 0 ? scene.names[body] : "" }));
+  const named = order.map(({ pose, body }) => ({ pose, name: body > 0 && isAlone(pose, poses) ? scene.names[body] : "" }));
   drawNames(ctx, camera, palette, named.filter(({ name }) => name).reverse());
   drawMarkersAt(ctx, camera, palette, scene.markers, frame, poses[0]);
   drawHeld(view, poses[0]);

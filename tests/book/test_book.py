@@ -182,6 +182,11 @@ def test_what_needs_python_says_so_beside_it(leaf):
         studio.locator(".live-row").locator("select:enabled, input:enabled, button:enabled").count()
         == 0
     )
+    asleep = studio.locator(".live-asleep")
+    assert asleep.count() >= 3
+    assert asleep.first.get_attribute("title") == "Needs Python, which does not run in this page"
+    style = "(node) => getComputedStyle(node.querySelector('select, input, button')).borderTopStyle"
+    assert asleep.first.evaluate(style) == "dashed"
     # A motion for the drawn example was made when the book was built: it can be turned.
     assert "m" in studio.locator(".pf-status").inner_text()
 

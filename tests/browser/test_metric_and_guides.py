@@ -59,31 +59,31 @@ def test_sliders_and_keyframes_move_the_guides(jupyter_lab):
     lab.screenshot("guides_top", top=".pf-board")
     assert lab.page.locator(".pf-board").count() == 5  # the two below belong to the sampler scope
     before = lab.pixels(".pf-board")
-    assert "t = 0.00" in lab.ask("says.value")
-    assert " 0 guides as hard" not in lab.ask("says.value"), "eq. 52 with Table 5: hard at first"
+    assert "t = 0.00" in lab.ask("guides.says.value")
+    assert " 0 guides as hard" not in lab.ask("guides.says.value"), (
+        "eq. 52 with Table 5: hard at first"
+    )
 
     handle = lab.page.locator(".widget-slider", has_text="c0").locator(".noUi-handle")
     handle.focus()
     lab.page.keyboard.press("ArrowLeft")
-    lab.wait_for("sliders['c0'].value < 3")
+    lab.wait_for("guides.sliders['c0'].value < 3")
     lab.page.locator(".widget-slider").first.locator(".noUi-handle").focus()
     lab.page.keyboard.press("End")
-    lab.wait_for("'t = 0.99' in says.value and ' 0 guides as hard' in says.value")
+    lab.wait_for("'t = 0.99' in guides.says.value and ' 0 guides as hard' in guides.says.value")
     assert lab.pixels(".pf-board") != before
     lab.screenshot("guides_end", top=".pf-board")
     lab.page.get_by_role("button", name="Table 5").click()
-    lab.wait_for("sliders['c0'].value == 3")
+    lab.wait_for("guides.sliders['c0'].value == 3")
 
-    height = lab.ask("path.positions['key 6'][1]")
+    height = lab.ask("guides.path.positions['key 6'][1]")
     lab.page.locator(".pf-handle[data-name='key 6']").focus()
     for _ in range(3):
         lab.page.keyboard.press("ArrowUp")
-    lab.wait_for(f"path.positions['key 6'][1] > {height}")
-    state = (
-        "(lambda c, t, observed, y: project(c, observed, y, *trust(c, t, observed)[1:]))(*state())"
-    )
+    lab.wait_for(f"guides.path.positions['key 6'][1] > {height}")
+    state = "(lambda c, t, observed, y: project(c, observed, y, *trust(c, t, observed)[1:]))(*guides.state())"
     path = np.array(lab.ask(state))
-    assert path[6, 20] == pytest.approx(lab.ask("path.positions['key 6'][1]"), abs=1e-9)
+    assert path[6, 20] == pytest.approx(lab.ask("guides.path.positions['key 6'][1]"), abs=1e-9)
 
     assert lab.ask("[motion.residual < 1e-6 for motion in made.values()]") == [True, True]
     lab.screenshot("guides_sampler", top=".pf-viewer")

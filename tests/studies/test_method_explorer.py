@@ -5,6 +5,7 @@ import pytest
 import torch
 
 from projflow_lite.studies.method_explorer import WAYS, MethodExplorer
+from projflow_lite.widgets.recording import family, record
 
 
 class Still:
@@ -58,9 +59,24 @@ def test_another_wish_begins_anew():
     explorer.count.value = 2
     assert list(explorer.outcomes) == ["ddnm"]
     assert len(explorer.keyframes) == 2
+    explorer.count.value = 5
+    assert list(explorer.outcomes) == ["projflow", "ddnm"], "and an earlier one is remembered"
     explorer.joint.value = "head"
+    assert list(explorer.outcomes) == ["ddnm"]
     assert explorer.viewer.trail == [15]
     assert explorer.viewer.motion.residual < 1e-6
+
+
+def test_a_page_without_python_can_play_every_control_back():
+    explorer = MethodExplorer(Still(), frames=24, batch=1)
+    explorer.try_all()
+    records = record(family(explorer), seconds=60.0)
+    assert records.silent == []
+    assert records.strayed == {}
+    assert {r.control.widget for r in records.recordings} == {
+        explorer.method, explorer.joint, explorer.count,
+    }  # fmt: skip
+    assert all(len(r.stops) == len(r.control.stops) for r in records.recordings)
 
 
 def test_a_prompt_that_no_clip_has_is_refused():

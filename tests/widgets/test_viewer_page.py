@@ -215,3 +215,31 @@ def test_no_motion_and_unmounting_are_harmless(open_page):
     mount(page, Viewer())
     assert "no motion to show" in page.locator(".pf-viewer").inner_text()
     page.evaluate("unmount()")
+
+
+def words_of(page):
+    """What the next picture writes on its canvas."""
+    return page.evaluate(
+        """async () => {
+        const words = [], prototype = CanvasRenderingContext2D.prototype, write = prototype.fillText;
+        prototype.fillText = function (text, ...place) { words.push(text); write.call(this, text, ...place); };
+        window.model.set("camera", { ...window.model.get("camera"), yaw: 0.5 });
+        await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+        prototype.fillText = write;
+        return words;
+        }"""
+    )
+
+
+@pytest.mark.parametrize("apart", [0.1, 2.0])
+def test_thin_bodies_are_named_above_their_heads_only_where_they_stand_apart(
+    open_page, artefacts, apart
+):
+    page = open_page(width=460, height=520)
+    other = walking()
+    other.positions[..., 0] += apart
+    viewer = Viewer(walking(), other, names=["ddnm", "the clip"], playing=False)
+    mount(page, viewer)
+    assert page.locator(".pf-note").inner_text() == "ddnm\nthin: the clip"
+    assert ("the clip" in words_of(page)) is (apart > 1)
+    page.screenshot(path=artefacts / f"viewer_page_{'apart' if apart > 1 else 'together'}.png")

@@ -12,8 +12,16 @@
     const show = () => { label.textContent = model.get("description") ?? ""; };
     model.on("change:description", show);
     show();
-    control.disabled ||= Live.records.isSilent(model);
-    return element("div", { class: "live-row" }, label, control, ...more);
+    return asleep(model, control, element("div", { class: "live-row" }, label, control, ...more));
+  }
+
+  /** A control that nothing answers looks so on purpose, and says why to whoever tries it. */
+  function asleep(model, control, node) {
+    if (!Live.records.isSilent(model)) return node;
+    control.disabled = true;
+    node.classList.add("live-asleep");
+    node.title = "Needs Python, which does not run in this page";
+    return node;
   }
 
   /** Change a model as a hand would. */
@@ -94,8 +102,8 @@
 
   function button(model) {
     const node = element("button", { type: "button", title: model.get("tooltip") }, model.get("description"));
-    node.disabled = model.get("disabled") || Live.records.isSilent(model);
-    return element("div", { class: "live-row" }, node);
+    node.disabled = model.get("disabled");
+    return asleep(model, node, element("div", { class: "live-row" }, node));
   }
 
   const html = (typeset) => (model) => {

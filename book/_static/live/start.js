@@ -69,9 +69,17 @@
     const words = [];
     if (recorded) words.push("No Python runs in this page: it plays back answers recorded when the book was built, one control at a time.");
     if (silent.length) words.push(`${silentNames(silent)} need${silent.length === 1 ? "s" : ""} Python, which does not run in this page.`);
+    if (all.some(lacksPlaces)) words.push("Greyed entries of a menu were not recorded.");
     if (!words.length) return [];
     const link = element("a", { href: Live.runningPage }, "Run the notebook");
     return [element("p", { class: "live-note" }, `${words.join(" ")} `, link, " for everything.")];
+  }
+
+  /** Were only some entries of a menu recorded? */
+  function lacksPlaces(model) {
+    const labels = model.get("_options_labels");
+    const recorded = labels && Live.records.stopsOf(model.id, "index");
+    return Boolean(recorded) && recorded.length < labels.length;
   }
 
   function silentNames(models) {
