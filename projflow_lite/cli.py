@@ -51,9 +51,17 @@ def build_parser() -> argparse.ArgumentParser:
 
     score = commands.add_parser("score", help="judge a prior against held-out motion")
     score.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
+    score.add_argument("--classroom", type=Path, help="a second checkpoint, for a row of its own")
     score.add_argument("--quick", action="store_true", help="two minutes, wide intervals")
+    score.add_argument(
+        "--folder",
+        type=Path,
+        default=Path("runs/score"),
+        help="for results as they are made; an interrupted run goes on there (default: runs/score)",
+    )
     score.add_argument("--blind", type=Path, metavar="FOLDER", help="write a blind page instead")
     score.add_argument("--real", type=Path, help="real clips (.npz) for the blind page")
+    score.add_argument("--out", type=Path, help="write the prior's card to this folder")
     score.add_argument("--json", type=Path, help="write the numbers to this file")
     score.set_defaults(run=run_score)
 
@@ -131,14 +139,19 @@ def run_reproduce(options: argparse.Namespace) -> dict:
 def run_score(options: argparse.Namespace) -> dict:
     """Print the table of scores, or write a page to guess which clips are real."""
     from projflow_lite.prior import load_prior
-    from projflow_lite.studies import blind_page, score_prior
+    from projflow_lite.studies import blind_page, score_prior, score_prior_words
 
     prior = load_prior(options.prior)
     if options.blind:
         page, key = blind_page.run(prior, options.blind, options.real)
         return {"page": str(page), "key": str(key)}
-    rows = score_prior.run(prior, quick=options.quick)
-    print(score_prior.table(rows))
+    other = load_prior(options.classroom) if options.classroom else None
+    rows = score_prior.run(prior, quick=options.quick, classroom=other, folder=options.folder)
+    print(score_prior_words.table(rows))
+    if options.out:
+        (options.out / "results").mkdir(parents=True, exist_ok=True)
+        (options.out / "results" / "prior-card.json").write_text(json.dumps(rows, indent=1) + "\n")
+        (options.out / "prior-card.md").write_text(score_prior_words.card(rows, prior.recipe))
     return {"rows": rows}
 
 

@@ -8,21 +8,26 @@ what the intervals are over: other captions, other clips and other noise.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
-from typing import Any, NamedTuple
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
 from data_synth import held_out
+from projflow_lite.prior import Prior
 from projflow_lite.samplers import sample
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import interval, load_evaluator, multimodality, score_clips
+from projflow_lite.studies.cells import fingerprint, stored
 
 BATCH = 64
-QUICK: dict[str, Any] = {"clips": 3 * BATCH, "repetitions": 3, "steps": (25,)}
+QUICK: dict[str, Any] = {"clips": 3 * BATCH, "repetitions": 2, "steps": (25,)}
 DATA = "held-out data"
 
 PROMPTS, QUICK_PROMPTS, SAMPLES = 12, 4, 10
@@ -34,25 +39,6 @@ COLUMNS = (
 )  # fmt: skip
 
 
-class Bar(NamedTuple):
-    """What a prior has to reach: a score, as a ratio to the held-out data or as it is."""
-
-    score: str
-    low: float
-    high: float
-    ratio: bool = True
-
-
-BARS = (
-    Bar("FID", 0.0, 2.0),
-    Bar("R top 3", 0.95, math.inf),
-    Bar("diversity", 0.95, 1.05),
-    Bar("bone error %", 0.0, 1.0, ratio=False),
-    Bar("skating gmd", 0.0, 1.3),
-    Bar("jerk", 0.0, 1.3),
-)
-
-
 class Sample(NamedTuple):
     """Single clips of several lengths and what they show."""
 
@@ -60,13 +46,23 @@ class Sample(NamedTuple):
     captions: list[str]
 
 
+class Row(NamedTuple):
+    """A row of the table: who makes the motions, in how many steps; nobody for the data itself."""
+
+    name: str
+    prior: Velocity | None
+    steps: int | None
+
+
 def run(
     prior: Velocity,
-    clips: int = 512,
-    repetitions: int = 5,
+    clips: int = 192,
+    repetitions: int = 4,
     steps: tuple[int, ...] = (25, 50, 100),
     quick: bool = False,
     progress: bool = True,
+    classroom: Velocity | None = None,
+    folder: Path | None = None,
 ) -> list[dict[str, Any]]:
     """Score a prior.
 
@@ -75,9 +71,12 @@ def run(
         clips: motions a repetition, a multiple of 64.
         repetitions: how often everything is drawn anew; 2 at least give an interval.
         steps: numbers of sampling steps, each a row.
-        quick: three repetitions of 192 clips at 25 steps, instead of the three numbers above. A
+        quick: two repetitions of 192 clips at 25 steps, instead of the three numbers above. A
             first look: its intervals are wide.
         progress: show a progress bar.
+        classroom: another prior, for a row of its own with the first number of steps.
+        folder: where results are stored as they are made; a run that was interrupted goes on
+            there. None stores nothing.
 
     Returns:
         One record a row, held-out data first: ``row``, ``steps``, ``clips``, ``repetitions``,
@@ -90,31 +89,64 @@ def run(
     if quick:
         clips, repetitions, steps = QUICK["clips"], QUICK["repetitions"], QUICK["steps"]
     check(clips, repetitions, steps)
-    lengths, prompts = lengths_of(prior), QUICK_PROMPTS if quick else PROMPTS
-    reference = data_sample(lengths, 4 * clips, 0).positions
-    names: list[int | None] = [None, *steps]  # None: the data itself
-    measured: dict[int | None, list[dict[str, float]]] = {name: [] for name in names}
-    total = repetitions * len(steps) * (clips + prompts * SAMPLES)
-    with tqdm(total=total, disable=not progress, unit="clip") as bar:
-        for repetition in range(repetitions):
-            data = data_sample(lengths, clips, repetition + 1)
-            many = repeated(lengths[len(lengths) // 2], prompts, repetition)
-            for count in names:
-                made, again = data, many
-                if count is not None:
-                    made = generate(prior, data, count, 2 * repetition, bar)
-                    again = generate(prior, many, count, 2 * repetition + 1, bar)
-                row = score_clips(made.positions, made.captions, reference, seed=repetition)
-                points = load_evaluator().embed_motion(again.positions).reshape(-1, SAMPLES, 64)
-                row["multimodality"] = multimodality(points, seed=repetition)
-                measured[count].append(row)
-    about = {"clips": clips, "repetitions": repetitions, "prompts": prompts, "lengths": lengths}
+    court = Court(lengths_of(prior), clips, QUICK_PROMPTS if quick else PROMPTS)
+    rows = [Row(DATA, None, None), *(Row(f"{count} steps", prior, count) for count in steps)]
+    if classroom is not None:
+        rows.append(Row(f"classroom, {steps[0]} steps", classroom, steps[0]))
+    measured: dict[Row, list[dict[str, float]]] = {row: [] for row in rows}
+    batches = repetitions * len(rows[1:]) * (clips + court.prompts * SAMPLES)
+    with tqdm(total=batches, disable=not progress, unit="clip") as bar:
+        for repetition, row in itertools.product(range(repetitions), rows):
+            measure = partial(court.judge, row, repetition, bar)
+            path = folder and folder / place_of(row, court) / f"repetition-{repetition}.json"
+            measured[row].append(stored(path, measure) if path else measure())
+    about = {
+        "clips": clips, "repetitions": repetitions, "prompts": court.prompts,
+        "lengths": court.lengths,
+    }  # fmt: skip
     return [
-        {"row": DATA if count is None else f"{count} steps", "steps": count}
+        {"row": row.name, "steps": row.steps}
         | about
-        | {"scores": summary(measured[count], measured[None])}
-        for count in names
+        | {"scores": summary(measured[row], measured[rows[0]])}
+        for row in rows
     ]
+
+
+def place_of(row: Row, court: Court) -> str:
+    """A folder's name that tells one prior, number of steps and size of a run from others."""
+    extent = f"{court.clips}-clips-{court.prompts}-prompts-{'-'.join(map(str, court.lengths))}"
+    if row.prior is None:
+        return f"data-{extent}"
+    return f"{fingerprint(cast(Prior, row.prior))}-{row.steps}-steps-{extent}"
+
+
+class Court:
+    """Judges rows on the same captions and clips.
+
+    Args:
+        lengths: of motions, frames.
+        clips: motions a repetition.
+        prompts: of the multimodality.
+    """
+
+    def __init__(self, lengths: list[int], clips: int, prompts: int) -> None:
+        self.lengths, self.clips, self.prompts = lengths, clips, prompts
+
+    @cached_property
+    def reference(self) -> list[NDArray]:
+        """The clips that everything is compared with."""
+        return data_sample(self.lengths, 4 * self.clips, 0).positions
+
+    def judge(self, row: Row, repetition: int, bar: tqdm) -> dict[str, float]:
+        """All scores of one row, once."""
+        made = data_sample(self.lengths, self.clips, repetition + 1)
+        again = repeated(self.lengths[len(self.lengths) // 2], self.prompts, repetition)
+        if row.prior is not None and row.steps is not None:
+            made = generate(row.prior, made, row.steps, 2 * repetition, bar)
+            again = generate(row.prior, again, row.steps, 2 * repetition + 1, bar)
+        scores = score_clips(made.positions, made.captions, self.reference, seed=repetition)
+        points = load_evaluator().embed_motion(again.positions).reshape(-1, SAMPLES, 64)
+        return scores | {"multimodality": multimodality(points, seed=repetition)}
 
 
 def check(clips: int, repetitions: int, steps: tuple[int, ...]) -> None:
@@ -194,57 +226,3 @@ def summary(rows: list[dict[str, float]], floor: list[dict[str, float]]) -> dict
             "mean": mean, "half width": half, "ratio": ratio, "ratio half width": ratio_half,
         }  # fmt: skip
     return cells
-
-
-def verdicts(rows: list[dict[str, Any]]) -> list[str]:
-    """One sentence for each row and bar: is it met, missed, or within the interval?"""
-    return [sentence(row, bar) for row in rows if row["row"] != DATA for bar in BARS]
-
-
-def sentence(row: dict[str, Any], bar: Bar) -> str:
-    """What one row says of one bar."""
-    cell = row["scores"][bar.score]
-    value, half = (
-        (cell["ratio"], cell["ratio half width"])
-        if bar.ratio
-        else (cell["mean"], cell["half width"])
-    )
-    met = bar.low <= value <= bar.high
-    # Without an interval (one repetition) nothing is said of its reach.
-    open_ = any(math.isfinite(edge) and abs(value - edge) < half for edge in (bar.low, bar.high))
-    verdict = "met" if met else "MISSED"
-    doubt = ", but the interval holds the bar" if open_ else ""
-    unit = " times held-out data" if bar.ratio else ""
-    return (
-        f"{row['row']}: {bar.score} is {value:.2f} ± {half:.2f}{unit}, "
-        f"bar {limits(bar)}: {verdict}{doubt}."
-    )
-
-
-def limits(bar: Bar) -> str:
-    """A bar in words."""
-    if bar.high == math.inf:
-        return f"at least {bar.low:g}"
-    return f"at most {bar.high:g}" if bar.low == 0 else f"{bar.low:g} to {bar.high:g}"
-
-
-def table(rows: list[dict[str, Any]]) -> str:
-    """The records as text: a line a score, a column a row, then the verdicts."""
-    first = rows[0]
-    lines = [
-        f"{first['repetitions']} repetitions of {first['clips']} clips, frames "
-        f"{', '.join(map(str, first['lengths']))}; multimodality over {first['prompts']} prompts "
-        f"with {SAMPLES} motions each. Mean ± 95 %, and in brackets the ratio to held-out data.",
-        f"{'':18s}" + "".join(f"{row['row']:>28s}" for row in rows),
-    ]
-    for name in COLUMNS:
-        cells = (row["scores"][name] for row in rows)
-        lines.append(f"{name:18s}" + "".join(f"{shown(cell):>28s}" for cell in cells))
-    return "\n".join([*lines, "", *verdicts(rows)])
-
-
-def shown(cell: dict[str, float]) -> str:
-    """One cell of the table."""
-    # Nothing is a multiple of bones that do not change at all.
-    ratio = f"{cell['ratio']:.2f}" if cell["ratio"] < 1000 else "–"
-    return f"{cell['mean']:.3f} ± {cell['half width']:.3f} ({ratio})"

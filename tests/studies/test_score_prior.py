@@ -1,7 +1,9 @@
 """The table that judges a prior, on priors whose place in it is known beforehand."""
 
+import json
 from collections import Counter
-from dataclasses import replace
+from dataclasses import asdict, replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,8 +11,11 @@ import torch
 
 from data_synth import held_out
 from projflow_lite.prior.training import RECIPES, train
-from projflow_lite.studies import score_prior
-from projflow_lite.studies.score_prior import BARS, COLUMNS, SAMPLES
+from projflow_lite.studies import score_prior, score_prior_words
+from projflow_lite.studies.score_prior import COLUMNS, SAMPLES
+from projflow_lite.studies.score_prior_words import BARS
+
+BOOK = Path(__file__).parents[2] / "book"
 
 
 class Copyist:
@@ -60,12 +65,58 @@ def test_held_out_data_is_the_floor_and_noise_is_far_above_it(rows):
     assert noise["R top 3"]["mean"] < 0.5 * data["R top 3"]["mean"]
 
 
+def test_a_second_prior_has_a_row_and_an_interrupted_run_goes_on(rows, tmp_path, monkeypatch):
+    prior = train(replace(RECIPES["smoke"], steps=2), tmp_path / "run", progress=False)
+    other = train(replace(RECIPES["smoke"], steps=2, seed=1), tmp_path / "other", progress=False)
+    made, generate = [], score_prior.generate
+
+    def counting(*given):
+        if len(made) == 3:
+            raise KeyboardInterrupt
+        made.append(given[0])
+        return generate(*given)
+
+    def run():
+        return score_prior.run(
+            prior, 64, 2, (1, 2), progress=False, classroom=other, folder=tmp_path / "cells"
+        )
+
+    monkeypatch.setattr(score_prior, "generate", counting)
+    with pytest.raises(KeyboardInterrupt):
+        run()
+    made.clear()
+    monkeypatch.setattr(
+        score_prior, "generate", lambda *given: made.append(given) or generate(*given)
+    )
+    resumed = run()
+    assert len(made) == 2 * (2 * 3 - 1), "one row of one repetition was there"
+    assert resumed[:3] == rows
+    assert resumed[3]["row"] == "classroom, 1 steps"
+    assert resumed[3]["scores"]["jerk"]["mean"] != rows[1]["scores"]["jerk"]["mean"]
+
+
 def test_every_row_and_bar_has_a_verdict_in_the_table(rows):
-    text, sentences = score_prior.table(rows), score_prior.verdicts(rows)
+    text, sentences = score_prior_words.table(rows), score_prior_words.verdicts(rows)
     assert len(sentences) == 2 * len(BARS)
     for part in (*COLUMNS, *sentences, "2 repetitions of 64 clips", "held-out data", "1 steps"):
         assert part in text
     assert any("MISSED" in line and "FID" in line for line in sentences)
+
+
+def test_the_card_holds_every_number_of_the_table(rows):
+    card = score_prior_words.card(rows, {"steps": 2, "batch": 8})
+    assert "trained for 2 steps of 8 clips" in card
+    for row in rows:
+        for name in COLUMNS:
+            assert score_prior_words.shown(row["scores"][name]) in card
+    for line in score_prior_words.verdicts(rows):
+        assert f"- {line}\n" in card
+
+
+def test_the_card_in_the_book_is_written_from_its_numbers():
+    rows = json.loads((BOOK / "results" / "prior-card.json").read_text())
+    recipe = json.loads(json.dumps(asdict(RECIPES["shipped"])))
+    assert (BOOK / "prior-card.md").read_text() == score_prior_words.card(rows, recipe)
 
 
 def test_a_prior_that_copies_data_of_its_kind_meets_the_bars_of_physics():
@@ -98,7 +149,7 @@ def cell(mean, half, ratio, ratio_half):
 def test_verdicts_say_what_the_numbers_say(score, values, expected):
     bar = next(bar for bar in BARS if bar.score == score)
     row = {"row": "25 steps", "scores": {score: cell(*values)}}
-    assert score_prior.sentence(row, bar).endswith(expected)
+    assert score_prior_words.sentence(row, bar).endswith(expected)
 
 
 def test_a_ratio_has_the_error_of_both_its_parts():
