@@ -57,7 +57,7 @@ class Row(NamedTuple):
 def run(
     prior: Velocity,
     clips: int = 192,
-    repetitions: int = 4,
+    repetitions: int = 3,
     steps: tuple[int, ...] = (25, 50, 100),
     quick: bool = False,
     progress: bool = True,
