@@ -168,5 +168,7 @@ def table(outcomes: dict[str, Outcome], chosen: str) -> str:
             for number in outcomes[name].numbers
         )
         label = html.escape(name)
-        lines.append(f'<tr style="font-weight: {weight}"><td>{label}</td>{cells}</tr>')
+        lines.append(
+            f'<tr style="font-weight: {weight}"><td style="white-space: nowrap">{label}</td>{cells}</tr>'
+        )
     return f'<table style="line-height: 1.4"><tr><th></th>{head}</tr>{"".join(lines)}</table>'
