@@ -20,7 +20,8 @@ import torch
 from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
-from projflow_lite.prior import Prior
+from data_synth import Clips, held_out
+from projflow_lite.prior import Prior, load_prior
 from projflow_lite.scores import (
     frechet_distance,
     interval,
@@ -123,7 +124,7 @@ class Cell(NamedTuple):
         return Path(self.rival.spelled) / f"{self.joint}-{self.keys}".replace(" ", "-")
 
 
-ALL = "all"
+ALL, DATA = "all", "held-out data"
 
 Scores = dict[str, float]
 
@@ -190,6 +191,29 @@ def over_seeds(values: Sequence[Scores], columns: Sequence[str]) -> dict[str, di
     return scores
 
 
+def data_row(
+    score: Callable[[Clips, int], Scores],
+    clips: int,
+    frames: int,
+    first: int,
+    columns: Sequence[str],
+    about: dict[str, Any],
+) -> dict[str, Any]:
+    """A record of what data itself scores.
+
+    Args:
+        score: of clips and a seed.
+        clips: how many a seed, each of so many `frames`.
+        frames: see `clips`.
+        first: held-out seed of seed 0; those of other seeds follow.
+        columns: of the table.
+        about: what all records hold; among it ``seeds``.
+    """
+    parts = [score(held_out(clips, frames, first + seed), seed) for seed in range(about["seeds"])]
+    row = {"joint": ALL, "keys": ALL, "method": DATA, "options": {}}
+    return row | about | {"scores": over_seeds(parts, columns)}
+
+
 def mean_of(parts: list[Scores]) -> Scores:
     """Mean of every column; of the residual the largest."""
     row = {name: float(np.mean([part[name] for part in parts])) for name in parts[0]}
@@ -221,6 +245,27 @@ def options_of(description: str, folder: Path, clips: int, seeds: int, steps: in
     parser.add_argument("--folder", type=Path, default=folder, help="for results as they are made")
     parser.add_argument("--out", type=Path, help="folder for results/ and pictures/")
     return parser
+
+
+def chosen(rivals: Sequence[Rival], names: Sequence[str] | None) -> tuple[Rival, ...]:
+    """The methods of these names, or all of them."""
+    return tuple(rival for rival in rivals if names is None or rival.name in names)
+
+
+def carry_out(
+    name: str,
+    options: argparse.Namespace,
+    protocol: Any,
+    run: Callable[..., list[dict[str, Any]]],
+    table: Callable[[Any], str],
+    draw: Callable[[Any, Path], Any],
+) -> None:
+    """Run a comparison as asked for: print the table, and write records and picture if wanted."""
+    prior = load_prior(options.prior)
+    rows = run(prior, protocol, options.folder, options.device)
+    print(table(rows))
+    if options.out:
+        published(name, prior, rows, draw, options.out)
 
 
 def check_extent(who: str, clips: int, seeds: int) -> None:

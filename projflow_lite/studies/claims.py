@@ -19,7 +19,7 @@ from projflow_lite.scores import interval
 from projflow_lite.scores.interval import Interval
 from projflow_lite.studies.cells import ALL
 
-DATA, TIME = "held-out data", "time"
+TIME = "time"
 
 EXACT = 1e-5
 """Errors below this are rounding: two methods that both stay below are not told apart."""

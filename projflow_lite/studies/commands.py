@@ -34,11 +34,7 @@ class Wanted(NamedTuple):
 def run_posterior(wanted: Wanted) -> dict[str, Any]:
     """Does projection sampling draw from p(x | y)?"""
     rows = posterior.run(wanted.quick)
-    print(posterior.table(rows))
-    pictures = wanted.out / "pictures"
-    pictures.mkdir(parents=True, exist_ok=True)
-    picture = posterior.figure(rows, pictures / "posterior.png")
-    return {"picture": str(picture), "rows": rows}
+    return shown("posterior", posterior, rows, wanted)
 
 
 def run_contact_sheet(wanted: Wanted) -> dict[str, Any]:
@@ -65,6 +61,11 @@ def run_sensitivity(wanted: Wanted) -> dict[str, Any]:
 def compared(name: str, study: Any, wanted: Wanted) -> dict[str, Any]:
     """Run a comparison of methods: its table, its picture and its records."""
     rows = study.run(load_prior(wanted.prior), study.QUICK if wanted.quick else None)
+    return shown(name, study, rows, wanted)
+
+
+def shown(name: str, study: Any, rows: Any, wanted: Wanted) -> dict[str, Any]:
+    """Print the table of a study and draw its picture."""
     print(study.table(rows))
     pictures = wanted.out / "pictures"
     pictures.mkdir(parents=True, exist_ok=True)
@@ -83,11 +84,7 @@ def run_noise_reading(wanted: Wanted) -> dict[str, Any]:
 def run_fewer_steps(wanted: Wanted) -> dict[str, Any]:
     """How few steps keep the quality of a hundred?"""
     rows = fewer_steps.run(load_prior(wanted.prior), wanted.quick)
-    print(fewer_steps.table(rows))
-    pictures = wanted.out / "pictures"
-    pictures.mkdir(parents=True, exist_ok=True)
-    picture = fewer_steps.figure(rows, pictures / "fewer-steps.png")
-    return {"picture": str(picture), "rows": rows}
+    return shown("fewer-steps", fewer_steps, rows, wanted)
 
 
 def run_data_card(wanted: Wanted) -> dict[str, Any]:

@@ -14,7 +14,6 @@ interrupted run goes on from where it was, and more seeds narrow the intervals o
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -24,7 +23,7 @@ import torch
 from numpy.typing import NDArray
 
 from data_synth import Clips, held_out
-from projflow_lite.prior import Prior, load_prior
+from projflow_lite.prior import Prior
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import control_errors
 from projflow_lite.studies.cells import (
@@ -33,30 +32,30 @@ from projflow_lite.studies.cells import (
     Features,
     Group,
     Rival,
+    carry_out,
     check_extent,
+    chosen,
+    data_row,
     features_of,
     filled,
     fingerprint,
     options_of,
-    over_seeds,
-    published,
     quality,
     stored,
     summarised,
 )
-from projflow_lite.studies.claims import DATA, TIME
+from projflow_lite.studies.claims import TIME
 from projflow_lite.studies.control_figure import figure
 from projflow_lite.studies.control_ways import (
     ABLATIONS,
     EDIT,
-    FREE,
     QUICK_DNO,
     RIVALS,
     Made,
     Task,
     elsewhere,
     make,
-    time_ratio,
+    timed,
 )
 from projflow_lite.studies.control_words import COLUMNS, sentences, table
 from projflow_lite.studies.noise_reading import FRAMES
@@ -140,15 +139,25 @@ def run(
             velocity, noise_std, cell.rival, task, wished(seed), p.steps, seed, reference
         )
 
+    timed_task, count = TIMED
+    few = held_out(count, FRAMES, WISHED)
+
+    def in_time(rival: Rival) -> Made:
+        return make(velocity, noise_std, rival, timed_task, few, p.steps, 0)
+
     times = {}
     for rival in p.rivals if p.clock else ():
-        clock = partial(timed, velocity, noise_std, rival, p.steps)
+        clock = partial(timed, rival, in_time)
         path = place / rival.spelled / f"time-{device}.json"
         times[rival.name] = {TIME: stored(path, clock)[TIME]}
     found = filled(place, cells_of(p), p.seeds, measure, progress)
     about = {"clips": p.clips, "steps": p.steps}
     rows = summarised(found, groups_of(p), p.rivals, COLUMNS, about)
-    return [data_row(p, reference), *(row | times.get(row["method"], {}) for row in rows)]
+    data = data_row(
+        lambda clips, seed: score(clips.positions, clips, None, reference, seed),
+        p.clips, FRAMES, OTHERS, COLUMNS, about | {"seeds": p.seeds},
+    )  # fmt: skip
+    return [data, *(row | times.get(row["method"], {}) for row in rows)]
 
 
 def cells_of(p: Protocol) -> list[Cell]:
@@ -170,17 +179,6 @@ def groups_of(p: Protocol) -> list[Group]:
     ]
 
 
-def data_row(p: Protocol, reference: Features) -> dict[str, Any]:
-    """What other held-out clips score against the reference."""
-    parts = []
-    for seed in range(p.seeds):
-        others = held_out(p.clips, FRAMES, OTHERS + seed)
-        parts.append(score(others.positions, others, None, reference, seed))
-    about = {"joint": ALL, "keys": ALL, "method": DATA, "options": {}}
-    extent = {"clips": p.clips, "seeds": p.seeds, "steps": p.steps}
-    return about | extent | {"scores": over_seeds(parts, COLUMNS)}
-
-
 def measured(
     velocity: Velocity,
     noise_std: float | torch.Tensor,
@@ -194,19 +192,6 @@ def measured(
     """One cell: sample one way with one seed, and score it."""
     made = make(velocity, noise_std, rival, task, wished, steps, seed)
     return score(made.positions, wished, made, reference, seed)
-
-
-def timed(
-    velocity: Velocity, noise_std: float | torch.Tensor, rival: Rival, steps: int
-) -> dict[str, float]:
-    """Seconds of a method over those of a sample without a wish, taken in turns."""
-    task, count = TIMED
-    clips = held_out(count, FRAMES, WISHED)
-
-    def work(way: Rival) -> Callable[[], Made]:
-        return partial(make, velocity, noise_std, way, task, clips, steps, 0)
-
-    return {TIME: 1.0 if rival == FREE else time_ratio(work(rival), work(FREE))}
 
 
 def score(
@@ -230,16 +215,12 @@ def main() -> None:
     parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: all six")
     parser.add_argument("--methods", nargs="+", help="names in the table (default: all)")
     options = parser.parse_args()
-    rivals = tuple(r for r in usual.rivals if options.methods is None or r.name in options.methods)
+    rivals = chosen(usual.rivals, options.methods)
     counts = (options.clips, options.seeds, options.steps)
     protocol = (
         QUICK if options.quick else Protocol(*counts, tuple(options.joints), DENSITIES, rivals)
     )
-    prior = load_prior(options.prior)
-    rows = run(prior, protocol, options.folder, options.device)
-    print(table(rows))
-    if options.out:
-        published("control", prior, rows, figure, options.out)
+    carry_out("control", options, protocol, run, table, figure)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from projflow_lite.studies.cells import ALL
-from projflow_lite.studies.claims import DATA, TIME
+from projflow_lite.studies.cells import ALL, DATA
+from projflow_lite.studies.claims import TIME
 from projflow_lite.studies.control_paper import SOURCES
 from projflow_lite.studies.posterior_figure import (
     BLUE,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import fields
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,7 +19,8 @@ from projflow_lite.projection import kinematic_joint_metric
 from projflow_lite.samplers import METHODS, GuideSettings, Imputation, euler, flow_times
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.skeleton import LOWER_BODY, joint_indices
-from projflow_lite.studies.cells import Rival
+from projflow_lite.studies.cells import Rival, Scores
+from projflow_lite.studies.claims import TIME
 
 BATCH = 64
 """Clips that are made at once. They share the frames of their keyframes, not the targets."""
@@ -204,6 +206,11 @@ def time_ratio(work: Callable[[], Any], reference: Callable[[], Any], turns: int
             seconds[turn, k] = time.perf_counter() - start
     best = seconds.min(0)
     return float(best[0] / best[1])
+
+
+def timed(rival: Rival, make: Callable[[Rival], Any]) -> Scores:
+    """What `make` takes of a method, over what it takes of a sample without a wish, in turns."""
+    return {TIME: 1.0 if rival == FREE else time_ratio(partial(make, rival), partial(make, FREE))}
 
 
 def elsewhere(prior: Any, device: str) -> Velocity:

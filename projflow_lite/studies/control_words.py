@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from projflow_lite.scores import interval
-from projflow_lite.studies.cells import ALL
+from projflow_lite.studies.cells import ALL, DATA
 from projflow_lite.studies.claims import (
-    DATA,
     block,
     claims_of,
     count_of,

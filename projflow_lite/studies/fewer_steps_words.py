@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from projflow_lite.scores import interval
+from projflow_lite.studies.cells import DATA
 
-DATA = "held-out data"
 OFF_FLOW = "off the flow, cm"
 
 COLUMNS = (

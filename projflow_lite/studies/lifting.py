@@ -16,7 +16,6 @@ A full run takes many hours on a laptop, so every cell is stored as it is made.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -25,7 +24,7 @@ import torch
 from numpy.typing import NDArray
 
 from data_synth import Clips, held_out
-from projflow_lite.prior import Prior, load_prior
+from projflow_lite.prior import Prior
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.studies.cells import (
     ALL,
@@ -33,19 +32,20 @@ from projflow_lite.studies.cells import (
     Features,
     Group,
     Rival,
+    carry_out,
     check_extent,
+    chosen,
+    data_row,
     features_of,
     filled,
     fingerprint,
     options_of,
-    over_seeds,
-    published,
     quality,
     stored,
     summarised,
 )
-from projflow_lite.studies.claims import DATA, TIME
-from projflow_lite.studies.control_ways import FREE, elsewhere, time_ratio
+from projflow_lite.studies.claims import TIME
+from projflow_lite.studies.control_ways import elsewhere, timed
 from projflow_lite.studies.lifting_figure import figure
 from projflow_lite.studies.lifting_pictures import CROSS, JOINTS, Errors
 from projflow_lite.studies.lifting_ways import (
@@ -136,14 +136,25 @@ def run(
     def measure(cell: Cell, seed: int) -> dict[str, float]:
         return measured(velocity, noise_std, cell, wished(seed), p.steps, seed, learnt, reference)
 
+    timed_task, count = TIMED
+    few = held_out(count, FRAMES, WISHED)
+
+    def in_time(rival: Rival) -> Made:
+        return make(velocity, noise_std, rival, timed_task, few, p.steps, 0, learnt)
+
     times = {}
     for rival in p.rivals:
-        clock = partial(timed, velocity, noise_std, rival, p.steps, learnt)
+        clock = partial(timed, rival, in_time)
         times[rival.name] = stored(place / rival.spelled / f"time-{device}.json", clock)[TIME]
     cells = [Cell(task, ALL, rival) for task in (*p.joints, CROSS) for rival in p.rivals]
     found = filled(place, cells, p.seeds, measure, progress)
-    rows = summarised(found, groups_of(p), p.rivals, COLUMNS, {"clips": p.clips, "steps": p.steps})
-    return [data_row(p, reference), *(row | {TIME: times[row["method"]]} for row in rows)]
+    about = {"clips": p.clips, "steps": p.steps}
+    rows = summarised(found, groups_of(p), p.rivals, COLUMNS, about)
+    data = data_row(
+        lambda clips, seed: score(clips.positions, clips, None, reference, seed),
+        p.clips, FRAMES, OTHERS, COLUMNS, about | {"seeds": p.seeds},
+    )  # fmt: skip
+    return [data, *(row | {TIME: times[row["method"]]} for row in rows)]
 
 
 def groups_of(p: Protocol) -> list[Group]:
@@ -153,17 +164,6 @@ def groups_of(p: Protocol) -> list[Group]:
         Group("average", ALL, tuple((joint, ALL) for joint in p.joints)),
         Group(CROSS, ALL, ((CROSS, ALL),)),
     ]
-
-
-def data_row(p: Protocol, reference: Features) -> dict[str, Any]:
-    """What other held-out clips score against the reference."""
-    parts = []
-    for seed in range(p.seeds):
-        others = held_out(p.clips, FRAMES, OTHERS + seed)
-        parts.append(score(others.positions, others, None, reference, seed))
-    about = {"joint": ALL, "keys": ALL, "method": DATA, "options": {}}
-    extent = {"clips": p.clips, "seeds": p.seeds, "steps": p.steps}
-    return about | extent | {"scores": over_seeds(parts, COLUMNS)}
 
 
 def measured(
@@ -197,19 +197,6 @@ def score(
     return {name: row[name] for name in COLUMNS if name in row}
 
 
-def timed(
-    velocity: Velocity, noise_std: float | torch.Tensor, rival: Rival, steps: int, learnt: Learnt
-) -> dict[str, float]:
-    """Seconds of a method over those of a sample without a wish, taken in turns."""
-    task, count = TIMED
-    clips = held_out(count, FRAMES, WISHED)
-
-    def work(way: Rival) -> Callable[[], Made]:
-        return partial(make, velocity, noise_std, way, task, clips, steps, 0, learnt)
-
-    return {TIME: 1.0 if rival == FREE else time_ratio(work(rival), work(FREE))}
-
-
 def main() -> None:
     """Measure, print the table, and write the records and the picture."""
     usual = Protocol()
@@ -219,14 +206,10 @@ def main() -> None:
     parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: all six")
     parser.add_argument("--methods", nargs="+", help="names in the table (default: all)")
     options = parser.parse_args()
-    rivals = tuple(r for r in usual.rivals if options.methods is None or r.name in options.methods)
+    rivals = chosen(usual.rivals, options.methods)
     counts = (options.clips, options.seeds, options.steps)
     protocol = QUICK if options.quick else Protocol(*counts, tuple(options.joints), rivals)
-    prior = load_prior(options.prior)
-    rows = run(prior, protocol, options.folder, options.device)
-    print(table(rows))
-    if options.out:
-        published("lifting", prior, rows, figure, options.out)
+    carry_out("lifting", options, protocol, run, table, figure)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from projflow_lite.studies.claims import DATA
+from projflow_lite.studies.cells import DATA
 from projflow_lite.studies.control_figure import EXACT, LOOKS, band, draw_times, few_ticks, look
 from projflow_lite.studies.lifting_paper import DIRECT, LIFT, RETRIEVAL
 from projflow_lite.studies.lifting_pictures import CROSS

@@ -24,11 +24,10 @@ from projflow_lite.prior import Prior
 from projflow_lite.samplers import sample
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import interval, load_evaluator, multimodality, score_clips
-from projflow_lite.studies.cells import fingerprint, stored
+from projflow_lite.studies.cells import DATA, fingerprint, stored
 
 BATCH = 64
 QUICK: dict[str, Any] = {"clips": 3 * BATCH, "repetitions": 2, "steps": (25,)}
-DATA = "held-out data"
 
 PROMPTS, QUICK_PROMPTS, SAMPLES = 12, 4, 10
 """Multimodality: this many prompts, and motions for each. The papers take 100 prompts."""

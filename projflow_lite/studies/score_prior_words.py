@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+from projflow_lite.studies.cells import DATA
 from projflow_lite.studies.data_card_words import paragraph
-from projflow_lite.studies.score_prior import COLUMNS, DATA, SAMPLES
+from projflow_lite.studies.score_prior import COLUMNS, SAMPLES
 
 
 class Bar(NamedTuple):
@@ -33,14 +34,17 @@ def verdicts(rows: list[dict[str, Any]]) -> list[str]:
     return [sentence(row, bar) for row in rows if row["row"] != DATA for bar in BARS]
 
 
+def reached(row: dict[str, Any], bar: Bar) -> tuple[float, float]:
+    """What a row has of the score of a bar, and how certain that is."""
+    cell = row["scores"][bar.score]
+    if bar.ratio:
+        return cell["ratio"], cell["ratio half width"]
+    return cell["mean"], cell["half width"]
+
+
 def sentence(row: dict[str, Any], bar: Bar) -> str:
     """What one row says of one bar."""
-    cell = row["scores"][bar.score]
-    value, half = (
-        (cell["ratio"], cell["ratio half width"])
-        if bar.ratio
-        else (cell["mean"], cell["half width"])
-    )
+    value, half = reached(row, bar)
     met = bar.low <= value <= bar.high
     # Without an interval (one repetition) nothing is said of its reach.
     open_ = any(math.isfinite(edge) and abs(value - edge) < half for edge in (bar.low, bar.high))
@@ -93,9 +97,9 @@ FEET = """
 
 def missed(rows: list[dict[str, Any]], score: str) -> bool:
     """Whether any row misses the bar of a score."""
-    return any(
-        line.split(": ")[1].startswith(score) and "MISSED" in line for line in verdicts(rows)
-    )
+    bar = next(bar for bar in BARS if bar.score == score)
+    made = (reached(row, bar)[0] for row in rows if row["row"] != DATA)
+    return not all(bar.low <= value <= bar.high for value in made)
 
 
 def card(rows: list[dict[str, Any]], recipe: dict[str, Any]) -> str:

@@ -18,9 +18,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from projflow_lite.prior import Prior, load_prior
+from projflow_lite.prior import Prior
 from projflow_lite.studies import control
-from projflow_lite.studies.cells import options_of, published
+from projflow_lite.studies.cells import carry_out, options_of
 from projflow_lite.studies.control import Protocol
 from projflow_lite.studies.control_ways import FREE
 from projflow_lite.studies.noise_reading import FRAMES
@@ -108,11 +108,7 @@ def main() -> None:
         if options.quick
         else protocol_of(chosen(options.constants), *counts, tuple(options.joints))
     )
-    prior = load_prior(options.prior)
-    rows = run(prior, protocol, options.folder, options.device)
-    print(table(rows))
-    if options.out:
-        published("sensitivity", prior, rows, figure, options.out)
+    carry_out("sensitivity", options, protocol, run, table, figure)
 
 
 if __name__ == "__main__":

@@ -9,8 +9,8 @@ from data_synth import held_out
 from projflow_lite.samplers import GuideSettings, Misfit
 from projflow_lite.skeleton import JOINTS, LOWER_BODY
 from projflow_lite.studies import claims, control, control_tuning, control_ways, control_words
-from projflow_lite.studies.cells import ALL, Rival
-from projflow_lite.studies.claims import DATA, TIME, Claim, claims_of, of_claim
+from projflow_lite.studies.cells import ALL, DATA, Rival
+from projflow_lite.studies.claims import TIME, Claim, claims_of, of_claim
 from projflow_lite.studies.control import Protocol
 from projflow_lite.studies.control_paper import EDIT_TABLE, PAPER, PRINTED, TABLES
 from projflow_lite.studies.control_ways import (

@@ -20,8 +20,8 @@ from projflow_lite.studies import (
     lifting_ways,
     lifting_words,
 )
-from projflow_lite.studies.cells import ALL, Rival, published
-from projflow_lite.studies.claims import DATA, TIME, Claim, claims_of
+from projflow_lite.studies.cells import ALL, DATA, Rival, published
+from projflow_lite.studies.claims import TIME, Claim, claims_of
 from projflow_lite.studies.control_ways import FREE
 from projflow_lite.studies.lifting import Protocol
 from projflow_lite.studies.lifting_depths import Lifter
