@@ -88,6 +88,7 @@ def gmd(
     through: str = "network",
     early: tuple[Imputation, float] | None = None,
     until: float = 0.99,
+    along: bool | None = None,
     space: Space | None = None,
     noise_std: Number = 1.0,
     callback: Callable[[Step], None] | None = None,
@@ -116,6 +117,8 @@ def gmd(
         early: more to impute, and the flow time (tau) before which: the point-to-point trajectory.
         until: flow time from which nothing is imputed any more. At 1 what is known is exact at the
             end. Below, the network may mend the seams, and misses by as much as it moves.
+        along: whether the body goes along with an imputed pelvis, see `Imputation`. None: if the
+            flow is on features as GMD's are, such as those of an emphasised prior.
         space: what the flow is on; None for motions in metres. An emphasised prior is one itself.
         noise_std: standard deviation of the flow's noise, a number, or something that broadcasts.
         callback: called with every `Step`; the state is as the flow has it, the
@@ -132,6 +135,7 @@ def gmd(
     """
     check_options(scale, pull, through, until)
     space = space or Metres()
+    known = known.taking_along(getattr(space, "along", False) if along is None else along)
     wanted = total_goal(known, pull, goal, scale)
     x_t = x0
     for t, t_next in itertools.pairwise(times):
@@ -194,7 +198,7 @@ def imputed_at(
 ) -> Imputation:
     """What is overwritten at flow time `t`."""
     if t >= until:
-        return Imputation(torch.zeros_like(known.mask), known.values)
+        return Imputation(torch.zeros_like(known.mask), known.values, known.along)
     return known.over(early[0]) if early and t < early[1] else known
 
 

@@ -1,0 +1,348 @@
+"""The prior on emphasised motion: the projection, what it means, what is stored and refused."""
+
+import itertools
+import json
+from dataclasses import asdict, replace
+
+import numpy as np
+import pytest
+import torch
+
+import projflow_lite as pf
+from data_synth import make_clips
+from data_synth.captions import phrases
+from projflow_lite.equations.gmd_emphasis import emphasise, unemphasise
+from projflow_lite.equations.gmd_metric import emphasis_metric
+from projflow_lite.prior import Prior, bands, load_prior, save_prior
+from projflow_lite.prior.emphasis import (
+    EMPHASISED,
+    EmphasisedPrior,
+    emphasis_in_metres,
+    load_emphasised,
+    mixing_matrix,
+    save_emphasised,
+    spreads_of,
+)
+from projflow_lite.prior.network import Network, by_frame, flat
+from projflow_lite.prior.small_training import EmphasisRecipe, EmphasisTrainer, turn
+from projflow_lite.prior.text import Vocabulary
+from projflow_lite.prior.training import begin, train
+from projflow_lite.samplers import sample
+
+SMOKE = EmphasisRecipe(steps=6, batch=4, widths=(16, 24), lengths=(20, 32))
+
+
+@pytest.fixture(scope="module")
+def trained(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run")
+    return train(SMOKE, folder, progress=False), folder
+
+
+@pytest.fixture(scope="module")
+def motions():
+    return torch.as_tensor(make_clips(512, 60, seed=5).positions)
+
+
+def fresh_prior(motions):
+    """A prior before its first step: what its network has to say is zero."""
+    torch.manual_seed(0)
+    mean = motions.mean((0, 1))
+    std = float((motions - mean).square().mean().sqrt())
+    prior = Prior(Vocabulary.of(phrases()), mean, std, (20, 196), {"widths": [16, 24]})
+    prior.network.learn_parts((motions - mean) / std)
+    return prior.eval().requires_grad_(False)
+
+
+def untrained(motions, c):
+    A, k = mixing_matrix(c)
+    plain, centred = fresh_prior(motions), motions - motions.mean((0, 1))
+    prior = EmphasisedPrior(plain, torch.as_tensor(A), k, c, spreads_of(centred))
+    plain.network.learn_parts(centred / plain.noise_std, prior.colour())
+    return prior
+
+
+def seen_from_pelvis(x):
+    """Pelvis, then every other joint as seen from it, ``(..., 66)``; worked out here."""
+    each = [x[..., 0, :]] + [x[..., j, :] - x[..., 0, :] for j in range(1, 22)]
+    return torch.cat(each, -1).double()
+
+
+def spread_of(motions):
+    """The two spreads, as a number for each feature."""
+    variance = seen_from_pelvis(motions).var((0, 1))
+    ground = [0, 2]
+    body = [i for i in range(66) if i not in ground]
+    spread = torch.zeros(66).double()
+    spread[ground], spread[body] = variance[ground].mean().sqrt(), variance[body].mean().sqrt()
+    return spread
+
+
+def standardised(motions):
+    """A function to features around the mean, measured here on all motions."""
+    mean, spread = seen_from_pelvis(motions).mean((0, 1)), spread_of(motions)
+    return lambda x: (seen_from_pelvis(x) - mean) / spread
+
+
+@pytest.mark.parametrize("c", [1, 10])
+def test_the_projection_is_the_papers(motions, c):
+    prior, x = untrained(motions, c), motions[0].double()
+    A, features = prior.A.double().numpy(), standardised(motions)
+    ours = prior.project(x).T
+    np.testing.assert_allclose(ours, emphasise(features(x).T, A, prior.scale), atol=2e-4)
+    x_proj = torch.randn(60, 66, generator=torch.Generator().manual_seed(0)).double()
+    back = unemphasise(x_proj.T.numpy(), A, prior.scale)
+    np.testing.assert_allclose(features(prior.unproject(x_proj)).T, back, atol=2e-4 * back.max())
+
+
+@pytest.mark.parametrize("c", [0.3, 1, 10, 100])
+def test_projected_motion_has_unit_variance(motions, c):
+    """On average over the 66 numbers, whatever A' was drawn: measured on motions."""
+    projected = untrained(motions, c).project(motions)
+    assert float(projected.flatten(0, 1).var(0).mean()) == pytest.approx(1, abs=0.01)
+
+
+@pytest.mark.parametrize("c", [1, 10])
+def test_a_motion_survives_the_way_there_and_back(motions, c):
+    prior, x = untrained(motions, c), motions[:8]
+    there = prior.project(x.double())
+    torch.testing.assert_close(prior.unproject(there), x.double(), atol=1e-9, rtol=0)
+    torch.testing.assert_close(prior.unproject(prior.project(x)), x, atol=2e-5, rtol=0)
+    assert prior.project(x).dtype == x.dtype
+
+
+def test_white_noise_in_projected_space_is_coloured_noise_on_motion(motions):
+    """Monte Carlo against the metric's inverse: independent from feature to feature."""
+    prior = untrained(motions, 10)
+    noise = torch.randn(100_000, 66, generator=torch.Generator().manual_seed(0))
+    drawn = seen_from_pelvis(prior.coloured(noise))
+    R = emphasis_metric(prior.A.double().numpy(), prior.scale)
+    spread = spread_of(motions).numpy()
+    expected = np.linalg.inv(R) * np.outer(spread, spread)
+    size = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
+    assert np.abs((torch.cov(drawn.T).numpy() - expected) / size).max() < 0.02
+    assert np.abs(expected / size - np.eye(66)).max() < 1e-4
+    torch.testing.assert_close(prior.noise.flatten(), drawn.std(0), rtol=0.01, atol=0)
+
+
+def test_the_plain_network_has_this_noise_as_loud_on_the_body_as_ever(motions):
+    """Monte Carlo, with the network's unit: its own noise has a standard deviation of 1."""
+    prior = untrained(motions, 3)
+    white = torch.randn(100_000, 66, generator=torch.Generator().manual_seed(0)).double()
+    ours = (white @ prior.colour().mT).unflatten(1, (22, 3))
+    one = prior.g * prior.plain.noise_std
+    torch.testing.assert_close(ours, prior.coloured(white) / one)
+    from_pelvis = (ours[:, 1:] - ours[:, :1]).std(0)
+    torch.testing.assert_close(from_pelvis, torch.ones(21, 3).double(), rtol=0.02, atol=0)
+
+
+def test_noise_of_one_part_tells_nothing_of_anothers(motions):
+    prior = untrained(motions, 10)
+    for basis in prior.plain.network.basis.double():
+        seen = torch.linalg.solve(basis, prior.colour())
+        torch.testing.assert_close(seen @ seen.T, torch.eye(66).double(), atol=1e-3, rtol=0)
+
+
+def test_emphasis_is_a_weight_and_nothing_else(motions):
+    """Against its spread a place at c = 10 has a tenth of the noise: by hand, 2 and 0.2."""
+    ratio = untrained(motions, 10).noise.flatten() / spread_of(motions)
+    others = [i for i in range(66) if i not in EMPHASISED]
+    size = (264 / 66) ** 0.5  # N - 2 + 2 c^2 = 264
+    torch.testing.assert_close(ratio[others], torch.full((64,), size).double(), rtol=1e-3, atol=0)
+    both = torch.full((2,), size / 10).double()
+    torch.testing.assert_close(ratio[list(EMPHASISED)], both, rtol=1e-3, atol=0)
+
+
+def test_noise_that_is_white_in_metres_has_an_emphasis_too(motions):
+    """At that c the place has 1 / sqrt(2) of the noise of a joint as seen from the pelvis."""
+    spreads = spreads_of(motions - motions.mean((0, 1)))
+    noise = untrained(motions, emphasis_in_metres(spreads)).noise
+    assert float(noise[0, 0] / noise[5, 0]) == pytest.approx(0.5**0.5, rel=1e-4)
+
+
+@pytest.mark.parametrize("t", [0.1, 0.5, 0.9, 0.99])
+@pytest.mark.parametrize("c", [1, 10])
+def test_a_fresh_network_gives_the_best_linear_answer(motions, c, t):
+    r"""Written out in projected space, where noise is white, without parts and changed times.
+
+    For data of covariance C it is :math:`t C (t^2 C + (1 - t)^2 I)^{-1} x_t` in each band; compared
+    is the pelvis, for limbs are evened.
+    """
+    prior = untrained(motions, c)
+    u1 = prior.project(motions.double())
+    noise = torch.randn(u1.shape, generator=torch.Generator().manual_seed(1)).double()
+    x_t = (1 - t) * noise + t * u1
+    best = torch.zeros_like(u1).mT
+    clean, seen = bands.split(u1.mT), bands.split(x_t.mT)
+    for k, size in enumerate(bands.sizes(60)):
+        C = torch.einsum("bcf,bdf->cd", clean[:, k], clean[:, k]) / (len(u1) * 60)
+        share = t**2 * C + (1 - t) ** 2 * size * torch.eye(66).double()
+        best += t * C @ torch.linalg.solve(share, seen[:, k])
+    expected, ours = (prior.unproject(x)[:, :, 0] for x in (best.mT, prior.endpoint(x_t, t)))
+    torch.testing.assert_close(ours, expected, rtol=1e-3, atol=2e-3)
+
+
+def test_every_step_of_a_run_is_the_same_in_both_spaces(trained):
+    """Euler on motions, from noise of that covariance, is Euler in projected space."""
+    prior, times = trained[0], [0.0, 0.3, 0.6, 0.9]
+    x_proj = torch.randn(2, 32, 66, generator=torch.Generator().manual_seed(2)).double()
+    x_t = prior.unproject(x_proj)
+    for t, t_next in itertools.pairwise(times):
+        x_proj = x_proj + (t_next - t) * prior(x_proj, t, "walks")
+        x1_hat = prior.unproject(prior.endpoint(prior.project(x_t), t, "walks"))
+        x_t = x_t + (t_next - t) / (1 - t) * (x1_hat - x_t)
+    torch.testing.assert_close(prior.unproject(x_proj), x_t, atol=1e-4, rtol=1e-4)
+
+
+def test_the_loss_is_that_of_noise_and_answers_in_projected_space():
+    """A perfect network has none; white noise is drawn as ever, and then coloured."""
+    trainer = EmphasisTrainer(SMOKE)
+    u1, ids = trainer.batch()
+    trainer.network.forward = lambda x, t, ids: u1
+    assert trainer.loss(u1, ids, torch.Generator().manual_seed(0)) == 0
+    white = torch.randn(1000, 20, 22, 3, generator=torch.Generator().manual_seed(0))
+    drawn = seen_from_pelvis(trainer.colour(white)).flatten(0, 1).std(0)
+    place = 0.1 * trainer.model.spreads[0] / trainer.model.spreads[1]
+    expected = torch.ones(66).double()
+    expected[list(EMPHASISED)] = place  # a tenth, by their spreads
+    torch.testing.assert_close(drawn, expected, rtol=0.03, atol=0)
+
+
+def test_training_lowers_the_loss():
+    recipe = replace(SMOKE, steps=60, batch=16, learning_rate=0.01, lengths=(32,))
+    trainer = EmphasisTrainer(recipe)
+    motions, ids = trainer.batch()
+
+    def loss_now():
+        with torch.no_grad():
+            return float(trainer.loss(motions, ids, torch.Generator().manual_seed(0)))
+
+    before = loss_now()
+    while trainer.step < 60:
+        trainer.advance()
+    assert loss_now() < 0.98 * before
+
+
+def weights(prior):
+    return torch.cat([w.flatten() for w in prior.plain.network.parameters()])
+
+
+def test_a_run_that_was_interrupted_ends_as_one_that_was_not(trained, tmp_path):
+    half = begin(SMOKE, tmp_path)
+    assert isinstance(half, EmphasisTrainer)
+    while half.step < 3:
+        half.advance()
+    half.save(tmp_path / "run.safetensors")
+    resumed = train(SMOKE, tmp_path, progress=False)
+    assert torch.equal(weights(resumed), weights(trained[0]))
+    assert torch.equal(resumed.A, trained[0].A)
+
+
+def test_a_run_may_begin_with_the_weights_of_a_prior(motions, tmp_path):
+    start = tmp_path / "start.safetensors"
+    save_prior(fresh_prior(motions), start)
+    trainer = EmphasisTrainer(replace(SMOKE, start=str(start)))
+    assert trainer.prior.lengths == (20, 196)  # those of the prior, not of the recipe
+    theirs = dict(load_prior(start).network.named_parameters())
+    for name, ours in trainer.network.named_parameters():
+        assert ours.requires_grad
+        assert name.startswith(("enter", "leave")) or torch.equal(ours, theirs[name])
+    trainer.advance()
+    trainer.write(tmp_path / "prior.safetensors")
+    again = trainer.read(tmp_path / "prior.safetensors")
+    assert again.plain.recipe["start"] == str(start)
+
+
+def test_a_network_turned_to_other_parts_sees_and_says_what_it_did():
+    """Of motions that vary in every direction: without noise it sees, with nothing else it says."""
+    random = torch.Generator().manual_seed(0)
+    mix, noise = (torch.randn(66, 66, generator=random) for _ in range(2))
+    u1 = (torch.randn(64, 60, 66, generator=random) @ mix).unflatten(2, (22, 3))
+    torch.manual_seed(0)
+    network = Network(5, (16, 24))
+    torch.nn.init.normal_(network.leave.weight)
+    torch.nn.init.normal_(network.leave.bias)
+    network.learn_parts(u1)
+    x, h = bands.split(flat(u1[:2])), torch.randn(2, 16, 30, generator=random)
+
+    def look_and_say():
+        seen = torch.linalg.solve(network.basis, x) / network.spread
+        together = torch.cat([seen.flatten(1, 2), torch.zeros(2, 23, 60)], dim=1)
+        said = network.spread * by_frame(network.leave(h), 60)
+        return network.enter(together).detach(), (network.basis @ said).detach()
+
+    seen, said = look_and_say()
+    before = network.basis.clone(), network.spread.clone()
+    network.learn_parts(u1, noise)
+    unturned = look_and_say()
+    turn(network, *before)
+    again = look_and_say()
+    for first, second, not_yet in zip((seen, said), again, unturned, strict=True):
+        torch.testing.assert_close(first, second, atol=1e-3 * float(first.std()), rtol=0)
+        assert (first - not_yet).std() > 0.1 * first.std()
+
+
+def test_a_checkpoint_comes_back_with_its_random_matrix(trained, tmp_path):
+    prior, folder = trained
+    save_emphasised(prior, tmp_path / "again.safetensors")
+    again = load_emphasised(tmp_path / "again.safetensors")
+    assert torch.equal(again.A, prior.A)
+    assert (again.c, again.scale, again.lengths) == (10, prior.scale, (20, 32))
+    assert again.plain.recipe == json.loads(json.dumps(asdict(SMOKE)))
+    x = torch.randn(1, 20, 66, generator=torch.Generator().manual_seed(0))
+    assert torch.equal(again(x, 0.5, "a person walks"), prior(x, 0.5, "a person walks"))
+    files = [tmp_path / "again.safetensors", folder / "prior.safetensors"]
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+@pytest.mark.parametrize("method", ["gmd", "gmd_keyframes"])
+def test_gmd_samples_through_it(trained, method):
+    prior = trained[0]
+    wish = pf.pin("pelvis", [10], [[0.3, 0.5]], axes="xz")
+    motion = sample(prior, wish, "a person walks", 32, 3, method=method, batch=2, until=1.0)
+    assert motion.positions.shape == (2, 32, 22, 3)
+    np.testing.assert_allclose(motion.positions[:, 10, 0, [0, 2]], [[0.3, 0.5]] * 2, atol=1e-6)
+    free = sample(prior, None, "a person walks", 32, 3)
+    assert np.isfinite(free.positions).all()
+
+
+def test_damaged_and_foreign_checkpoints_are_named(trained, motions, tmp_path):
+    whole = (trained[1] / "prior.safetensors").read_bytes()
+    cut = tmp_path / "cut.safetensors"
+    for keep in (0, 1000, -1):
+        cut.write_bytes(whole[:keep])
+        with pytest.raises(ValueError, match=r"cut\.safetensors is damaged or is not a checkp"):
+            load_emphasised(cut)
+    with pytest.raises(FileNotFoundError, match="there is no checkpoint at"):
+        load_emphasised(tmp_path / "nothing.safetensors")
+    save_prior(fresh_prior(motions), tmp_path / "plain.safetensors")
+    with pytest.raises(ValueError, match=r"plain\.safetensors is not a projflow_lite emphasised"):
+        load_emphasised(tmp_path / "plain.safetensors")
+    with pytest.raises(ValueError, match="is not a projflow_lite prior"):
+        load_prior(trained[1] / "prior.safetensors")
+
+
+def test_a_checkpoint_that_contradicts_itself_is_named(trained, tmp_path):
+    prior = load_emphasised(trained[1] / "prior.safetensors")
+    prior.plain.sizes = {"widths": [24, 24]}
+    save_emphasised(prior, tmp_path / "odd.safetensors")
+    with pytest.raises(ValueError, match=r"odd\.safetensors does not fit its own description"):
+        load_emphasised(tmp_path / "odd.safetensors")
+    prior = load_emphasised(trained[1] / "prior.safetensors")
+    prior.A = prior.A[:3]
+    save_emphasised(prior, tmp_path / "odd.safetensors")
+    with pytest.raises(ValueError, match="does not fit its own description: no matrix A"):
+        load_emphasised(tmp_path / "odd.safetensors")
+
+
+def test_wrong_shapes_and_lengths_are_refused(trained):
+    prior = trained[0]
+    with pytest.raises(ValueError, match=r"expected a projected motion \(batch, frames, 66\)"):
+        prior(torch.zeros(2, 20, 22, 3), 0.5)
+    with pytest.raises(ValueError, match=r"project: expected shape \(..., 22, 3\), got \(20, 66\)"):
+        prior.project(torch.zeros(20, 66))
+    with pytest.raises(ValueError, match=r"unproject: expected shape \(..., 66\), got"):
+        prior.unproject(torch.zeros(20, 22, 3))
+    with pytest.raises(ValueError, match="500 frames; it was trained on motions of 20 to 32"):
+        sample(prior, None, frames=500)
+    with pytest.raises(ValueError, match="take gmd"):
+        sample(prior, pf.pin("pelvis", [0], np.zeros((1, 3))), frames=20)
