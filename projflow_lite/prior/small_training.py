@@ -153,7 +153,7 @@ class TrajectoryTrainer(Trainer):
 
 RECIPES: dict[str, Recipe] = training.RECIPES | {
     "emphasis_10": EmphasisRecipe(1500, learning_rate=5e-4, bfloat16=True, start="shipped"),
-    "emphasis_1": EmphasisRecipe(1500, learning_rate=5e-4, bfloat16=True, start="shipped", c=1.0),
+    "emphasis_1": EmphasisRecipe(1500, learning_rate=8e-4, bfloat16=True, start="shipped", c=1.0),
     "emphasis_classroom": EmphasisRecipe(3000, widths=(96, 144), bfloat16=True),
     "trajectory": TrajectoryRecipe(3000, widths=(40, 64), learning_rate=2e-3),
 }
