@@ -167,6 +167,6 @@ def table(outcomes: dict[str, Outcome], chosen: str) -> str:
             f'<td style="text-align: right; padding: 2px 8px">{number:.1f}</td>'
             for number in outcomes[name].numbers
         )
-        label = html.escape(name)
-        lines.append(f'<tr style="font-weight: {weight}"><td>{label}</td>{cells}</tr>')
+        label = f'<td style="white-space: nowrap">{html.escape(name)}</td>'
+        lines.append(f'<tr style="font-weight: {weight}">{label}{cells}</tr>')
     return f'<table style="line-height: 1.4"><tr><th></th>{head}</tr>{"".join(lines)}</table>'
