@@ -13,14 +13,8 @@ import torch
 
 from projflow_lite.prior import training
 from projflow_lite.prior.checkpoint import load_prior
-from projflow_lite.prior.emphasis import (
-    EMPHASISED,
-    EmphasisedPrior,
-    load_emphasised,
-    mixing_matrix,
-    save_emphasised,
-    spreads_of,
-)
+from projflow_lite.prior.emphasis import EmphasisedPrior, load_emphasised, save_emphasised
+from projflow_lite.prior.features import EMPHASISED, mixing_matrix, spreads_of
 from projflow_lite.prior.loss import FEET, loss_of, size_of
 from projflow_lite.prior.model import Prior
 from projflow_lite.prior.processes import Processes
@@ -153,8 +147,8 @@ class TrajectoryTrainer(Trainer):
 
 RECIPES: dict[str, Recipe] = training.RECIPES | {
     "emphasis_10": EmphasisRecipe(1500, learning_rate=5e-4, bfloat16=True, start="shipped"),
-    "emphasis_1": EmphasisRecipe(1500, learning_rate=8e-4, bfloat16=True, start="shipped", c=1.0),
+    "emphasis_1": EmphasisRecipe(1500, learning_rate=5e-4, bfloat16=True, start="shipped", c=1.0),
     "emphasis_classroom": EmphasisRecipe(3000, widths=(96, 144), bfloat16=True),
-    "trajectory": TrajectoryRecipe(3000, widths=(40, 64), learning_rate=2e-3),
+    "trajectory": TrajectoryRecipe(2000, widths=(40, 64), learning_rate=2e-3),
 }
 """The prior's own recipes, and those of GMD."""

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from projflow_lite import equations as eq
 from projflow_lite.motion import Motion
-from projflow_lite.prior.emphasis import mixing_matrix, mixing_of_positions
+from projflow_lite.prior.features import mixing_matrix, mixing_of_positions
 from projflow_lite.projection import kinematic_joint_metric
 from projflow_lite.skeleton import JOINTS, N_JOINTS, bone_lengths, joint_index
 from projflow_lite.widgets import Viewer
@@ -58,7 +58,7 @@ def metric_of_gmd(
 
     Args:
         c: how much more the place of the pelvis counts.
-        spreads: of the place and of the body, metres, see `projflow_lite.prior.emphasis`.
+        spreads: of the place and of the body, metres, see `projflow_lite.prior.features`.
         orthogonal: whether A' is; a Gaussian one couples everything with everything.
         seed: of A'.
 

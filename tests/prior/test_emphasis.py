@@ -14,13 +14,11 @@ from data_synth.captions import phrases
 from projflow_lite.equations.gmd_emphasis import emphasise, unemphasise
 from projflow_lite.equations.gmd_metric import emphasis_metric
 from projflow_lite.prior import Prior, load_prior, save_prior
-from projflow_lite.prior.emphasis import (
+from projflow_lite.prior.emphasis import EmphasisedPrior, load_emphasised, save_emphasised
+from projflow_lite.prior.features import (
     EMPHASISED,
-    EmphasisedPrior,
     emphasis_in_metres,
-    load_emphasised,
     mixing_matrix,
-    save_emphasised,
     spreads_of,
 )
 from projflow_lite.prior.small_training import EmphasisRecipe, EmphasisTrainer

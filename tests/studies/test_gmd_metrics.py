@@ -6,7 +6,7 @@ import torch
 from scipy.optimize import minimize
 
 from projflow_lite import equations as eq
-from projflow_lite.prior.emphasis import mixing_matrix, mixing_of_positions
+from projflow_lite.prior.features import mixing_matrix, mixing_of_positions
 from projflow_lite.samplers.gmd_imputation import Imputation
 from projflow_lite.skeleton import JOINTS
 from projflow_lite.studies.gmd_metrics import MetricFamily, metric_of_gmd, pulled, three_metrics
