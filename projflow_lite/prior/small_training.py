@@ -149,6 +149,6 @@ RECIPES: dict[str, Recipe] = training.RECIPES | {
     "emphasis_10": EmphasisRecipe(1500, learning_rate=5e-4, bfloat16=True, start="shipped"),
     "emphasis_1": EmphasisRecipe(1500, learning_rate=5e-4, bfloat16=True, start="shipped", c=1.0),
     "emphasis_classroom": EmphasisRecipe(3000, widths=(96, 144), bfloat16=True),
-    "trajectory": TrajectoryRecipe(2000, widths=(40, 64), learning_rate=2e-3),
+    "trajectory": TrajectoryRecipe(4000, widths=(40, 64), learning_rate=2e-3),
 }
 """The prior's own recipes, and those of GMD."""
