@@ -265,7 +265,8 @@ def measure(lab: Lab, name: str, repetitions: int) -> dict[str, Any]:
     """Move one front end many times."""
     front_end, page = FRONT_ENDS[name], lab.page
     print(name, file=sys.stderr, flush=True)
-    page.locator(front_end.look).first.wait_for(state="attached")
+    in_sight(lab, front_end.look.split()[0])  # JupyterLab leaves what is far off unfinished
+    page.locator(front_end.look).first.wait_for(state="attached", timeout=60_000)
     hand = front_end.hand(lab)
     times: list[float] = []
     for k in range(repetitions + 2):  # the first two warm up
