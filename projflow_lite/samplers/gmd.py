@@ -111,6 +111,7 @@ def gmd(
             (eq. 12 at p = 1): it makes the sparse signal dense. At 0 there is imputation alone.
             For 5 and for 1 keyframes the error is 0.048 and 0.090 m at 10, 0.036 and 0.056 m at
             20, 0.032 and 0.038 m at 40, where the worst of the five grows from 0.18 to 0.28 m.
+            An emphasised prior wants less: with c = 10, 20 overshoots, and 5 is enough.
         through: "network" takes the gradient with respect to the state, through the denoiser, as
             the paper does; "endpoint" with respect to the predicted motion, which costs no second
             pass through the network and moves only what the goal looks at.

@@ -74,18 +74,22 @@ class How(NamedTuple):
     along: bool | None = None
 
 
+PULL = {0: 20.0, 10: 5.0}
+"""Strength of the guidance towards keyframes, by c. Under emphasis 20 overshoots: of `walks(8, 2500)`
+five keyframes are missed by 8.5 cm without, and by 6.2, 7.7 and 16.2 cm at 5, 10 and 20."""
+
 FREE, PROJFLOW = "no control", "ProjFlow"
 TWO_STAGES = "emphasis, guidance, two stages"
 HOWS = {
     FREE: How(),
     "imputation": How(),
     "imputation, body along": How(along=True),
-    "imputation and guidance": How(pull=20),
+    "imputation and guidance": How(pull=PULL[0]),
     "mixing (c = 1)": How(c=1),
     "emphasis": How(c=10),
-    "emphasis, guidance": How(c=10, pull=20),
-    "emphasis, guidance, lines": How(c=10, pull=20, plan="lines"),
-    TWO_STAGES: How(c=10, pull=20, plan="model"),
+    "emphasis, guidance": How(c=10, pull=PULL[10]),
+    "emphasis, guidance, lines": How(c=10, pull=PULL[10], plan="lines"),
+    TWO_STAGES: How(c=10, pull=PULL[10], plan="model"),
     PROJFLOW: How(),
 }
 """What every way with keyframes may be. All but the last impute."""
