@@ -131,16 +131,24 @@ class Court:
 
     def __init__(self, lengths: list[int], clips: int, prompts: int) -> None:
         self.lengths, self.clips, self.prompts = lengths, clips, prompts
+        self.last: tuple[int, Sample, Sample] | None = None
 
     @cached_property
     def reference(self) -> list[NDArray]:
         """The clips that everything is compared with."""
         return data_sample(self.lengths, 4 * self.clips, 0).positions
 
+    def drawn(self, repetition: int) -> tuple[Sample, Sample]:
+        """Held-out clips of one repetition, and those of its captions that are repeated."""
+        if self.last is None or self.last[0] != repetition:
+            frames = self.lengths[len(self.lengths) // 2]
+            clips = data_sample(self.lengths, self.clips, repetition + 1)
+            self.last = repetition, clips, repeated(frames, self.prompts, repetition)
+        return self.last[1:]
+
     def judge(self, row: Row, repetition: int, bar: tqdm) -> dict[str, float]:
         """All scores of one row, once."""
-        made = data_sample(self.lengths, self.clips, repetition + 1)
-        again = repeated(self.lengths[len(self.lengths) // 2], self.prompts, repetition)
+        made, again = self.drawn(repetition)
         if row.prior is not None and row.steps is not None:
             made = generate(row.prior, made, row.steps, 2 * repetition, bar)
             again = generate(row.prior, again, row.steps, 2 * repetition + 1, bar)

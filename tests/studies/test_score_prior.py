@@ -15,7 +15,16 @@ from projflow_lite.studies import score_prior, score_prior_words
 from projflow_lite.studies.score_prior import COLUMNS, SAMPLES
 from projflow_lite.studies.score_prior_words import BARS
 
+SMOKE = replace(RECIPES["smoke"], steps=2, lengths=(40,))
 BOOK = Path(__file__).parents[2] / "book"
+
+
+@pytest.fixture(autouse=True, scope="module")
+def few_prompts():
+    """To find twelve captions that occur ten times takes longer than all the rest."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(score_prior, "PROMPTS", 3)
+        yield
 
 
 class Copyist:
@@ -43,7 +52,7 @@ class Copyist:
 @pytest.fixture(scope="module")
 def rows(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
-    prior = train(replace(RECIPES["smoke"], steps=2), folder, progress=False)
+    prior = train(SMOKE, folder, progress=False)
     return score_prior.run(prior, clips=64, repetitions=2, steps=(1, 2), progress=False)
 
 
@@ -66,8 +75,8 @@ def test_held_out_data_is_the_floor_and_noise_is_far_above_it(rows):
 
 
 def test_a_second_prior_has_a_row_and_an_interrupted_run_goes_on(rows, tmp_path, monkeypatch):
-    prior = train(replace(RECIPES["smoke"], steps=2), tmp_path / "run", progress=False)
-    other = train(replace(RECIPES["smoke"], steps=2, seed=1), tmp_path / "other", progress=False)
+    prior = train(SMOKE, tmp_path / "run", progress=False)
+    other = train(replace(SMOKE, seed=1), tmp_path / "other", progress=False)
     made, generate = [], score_prior.generate
 
     def counting(*given):
