@@ -7,27 +7,10 @@ Each step of diffusion (`diffusion`) is led twice: its belief about the clean mo
 
 Both are soft: the body follows because the network sees the changed state in the next step.
 
-**What it costs to be soft**, measured with the shipped prior: 32 captions of synthetic clips, the
-pelvis' x and z of 5 frames of each clip, 25 steps, one seed. The error is the mean distance to the
-keyframes; the tear is the largest relative change of a bone in a keyframe, on average.
-
-===============================================  ========  ======
-\                                                error, m  tear
-===============================================  ========  ======
-no control                                       0.166     6 %
-imputation alone, until 0.97                     0.153     6 %
-imputation alone, until 1                        0         85 %
-imputation and pull 20, until 0.99               0.036     5 %
-imputation and pull 20, until 1                  0         18 %
-pull 20 through the network, no imputation       0.041     5 %
-pull 20 at the endpoint, no imputation           0.039     5 %
-imputation and pull 20 at the endpoint, to 0.99  0.143     6 %
-ProjFlow                                         0         6 %
-===============================================  ========  ======
-
-So a few imputed frames are ignored, or torn off if one insists; the gradient is what leads. At the
-endpoint it does as well and costs half, but only where nothing is imputed: it moves exactly the
-coordinates that imputation protects.
+**What it costs to be soft.** A few imputed frames are ignored when imputation ends before the flow
+does, and torn off the body when it does not; the gradient is what leads. At the endpoint it does as
+well as through the network and costs half, but only where nothing is imputed: it moves exactly the
+coordinates that imputation protects. Notebook 14 shows GMD beside nine other methods.
 
 **What the push samples** is not quite :math:`p(x)\, e^{-s G(x)}`. The goal is taken at the mean of
 what x may still be, and not averaged over it, so the push is too strong, most so early. On data
