@@ -70,9 +70,10 @@ def test_the_prompt_decides_where_a_planned_trajectory_goes(planner, prompt, axi
 
 @pytest.mark.parametrize("frames", [20, 60, 196])
 def test_planned_trajectories_are_as_fast_as_those_of_bodies(planner, frames):
-    data = held_out(256, frames)
+    """The median speed of 256 clips of a second varies by a sixth: data is asked for more."""
+    data = held_out(1024, frames)
     real = data.positions[:, :, 0][..., [0, 2]]
-    ours = paths(planner, data.captions, frames)
+    ours = paths(planner, data.captions[:256], frames)
     speed, true = (np.linalg.norm(np.diff(z, axis=1), axis=-1) * 20 for z in (ours, real))
     for share in (0.5, 0.9):
         assert np.quantile(speed, share) == pytest.approx(np.quantile(true, share), rel=0.15)
