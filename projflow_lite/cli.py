@@ -17,7 +17,12 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True)
 
     train = commands.add_parser("train", help="teach the tiny flow; stop and resume at will")
-    train.add_argument("--recipe", default="classroom", help="classroom, shipped or smoke")
+    train.add_argument(
+        "--recipe",
+        default="classroom",
+        help="classroom, shipped or smoke; for GMD emphasis_10, emphasis_1, emphasis_classroom or "
+        "trajectory",
+    )
     train.add_argument("--out", type=Path, help="folder of the run (default: runs/RECIPE)")
     train.add_argument("--steps", type=int, help="optimiser steps, instead of the recipe's")
     train.add_argument("--seed", type=int, default=0)
@@ -39,8 +44,8 @@ def build_parser() -> argparse.ArgumentParser:
     reproduce = commands.add_parser("reproduce", help="measure or draw again what the docs show")
     reproduce.add_argument(
         "name",
-        help="contact-sheet, control, data-card, fewer-steps, lifting, noise-reading, posterior "
-        "or sensitivity",
+        help="contact-sheet, control, data-card, fewer-steps, gmd-table, lifting, noise-reading, "
+        "posterior or sensitivity",
     )
     reproduce.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     reproduce.add_argument("--out", type=Path, default=Path("book"), help="folder (default: book)")
@@ -84,7 +89,8 @@ def run_train(options: argparse.Namespace) -> dict:
     """Train by a recipe; an interrupted run goes on from where it was."""
     import torch
 
-    from projflow_lite.prior.training import RECIPES, train
+    from projflow_lite.prior.small_training import RECIPES
+    from projflow_lite.prior.training import train
 
     if options.recipe not in RECIPES:
         raise ValueError(f"'{options.recipe}' is not a recipe; try {', '.join(RECIPES)}")

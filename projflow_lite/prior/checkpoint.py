@@ -28,20 +28,9 @@ def save_prior(prior: Prior, path: str | Path, dtype: torch.dtype = torch.float1
         path: where; replaced in one step, so that an interruption never leaves half a file.
         dtype: of the stored weights; they are used in float32.
     """
-    tensors = {
-        name: value.detach().cpu().to(torch.float32 if name == "mean" else dtype).contiguous()
-        for name, value in prior.state_dict().items()
-    }
-    about = {
-        "format": FORMAT,
-        "words": prior.vocabulary.words,
-        "noise_std": prior.noise_std,
-        "lengths": prior.lengths,
-        "network": prior.sizes,
-        "recipe": prior.recipe,
-    }
+    tensors, about = pack(prior, dtype)
     # One key only: safetensors keeps several in no fixed order, and equal priors make equal files.
-    write(tensors, {"prior": json.dumps(about)}, path)
+    write(tensors, {"prior": json.dumps({"format": FORMAT} | about)}, path)
 
 
 def load_prior(path: str | Path | None = None) -> Prior:
@@ -56,8 +45,39 @@ def load_prior(path: str | Path | None = None) -> Prior:
             return load_prior(shipped)
     tensors, metadata = read(path)
     about = description(metadata, "prior", FORMAT, path, "load_prior")
+    return unpack(tensors, about, path, "load_prior")
+
+
+def pack(prior: Prior, dtype: torch.dtype = torch.float16) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Weights of a prior, by default in half precision, and what they mean."""
+    tensors = {
+        name: value.detach().cpu().to(torch.float32 if name == "mean" else dtype).contiguous()
+        for name, value in prior.state_dict().items()
+    }
+    about = {
+        "words": prior.vocabulary.words,
+        "noise_std": prior.noise_std,
+        "lengths": prior.lengths,
+        "network": prior.sizes,
+        "recipe": prior.recipe,
+    }
+    return tensors, about
+
+
+def unpack(
+    tensors: dict[str, torch.Tensor],
+    about: dict[str, Any],
+    path: str | Path,
+    who: str,
+    kind: type[Prior] = Prior,
+) -> Any:
+    """The inverse of `pack`: a prior of some kind, ready for use.
+
+    Raises:
+        ValueError: if weights and description do not fit; the message names the file.
+    """
     try:
-        prior = Prior(
+        prior = kind(
             Vocabulary(about["words"]),
             tensors["mean"],
             about["noise_std"],
@@ -68,9 +88,7 @@ def load_prior(path: str | Path | None = None) -> Prior:
         prior.load_state_dict({name: value.float() for name, value in tensors.items()})
     except (KeyError, TypeError, ValueError, RuntimeError) as error:
         reason = shown(str(error).splitlines()[-1].strip())
-        raise ValueError(
-            f"load_prior: {path} does not fit its own description: {reason}"
-        ) from error
+        raise ValueError(f"{who}: {path} does not fit its own description: {reason}") from error
     return prior.eval().requires_grad_(False)
 
 

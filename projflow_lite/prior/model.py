@@ -32,7 +32,14 @@ class Prior(nn.Module):
         lengths: shortest and longest motion it was trained on, frames.
         network: sizes of the network, see `Network`.
         recipe: how it was trained, for the record.
+
+    Attributes:
+        network_type: what predicts.
+        points: in a frame of what the flow is on, and their coordinates.
     """
+
+    network_type = Network
+    points: tuple[int, int] = (N_JOINTS, 3)
 
     def __init__(
         self,
@@ -46,7 +53,7 @@ class Prior(nn.Module):
         super().__init__()
         self.vocabulary = vocabulary
         self.sizes = network or {}
-        self.network = Network(len(vocabulary), mean=mean / noise_std, **self.sizes)
+        self.network = self.network_type(len(vocabulary), mean=mean / noise_std, **self.sizes)
         self.mean: torch.Tensor
         self.register_buffer("mean", mean.float())
         self.noise_std = float(noise_std)
@@ -85,9 +92,10 @@ class Prior(nn.Module):
 
     def check(self, x_t: torch.Tensor) -> None:
         """Refuse a shape or a length that the prior was not made for."""
-        if x_t.ndim != 4 or x_t.shape[-2:] != (N_JOINTS, 3):
+        if x_t.ndim != 4 or x_t.shape[-2:] != self.points:
+            points = "{}, {}".format(*self.points)
             raise ValueError(
-                f"prior: expected shape (batch, frames, {N_JOINTS}, 3), got {tuple(x_t.shape)}"
+                f"prior: expected shape (batch, frames, {points}), got {tuple(x_t.shape)}"
             )
         self.check_frames(x_t.shape[1])
 

@@ -103,7 +103,12 @@ class Network(nn.Module):
         condition: length of the vector that carries flow time and prompt.
         mean: ``(22, 3)`` what was taken out of the motion to centre it, in its scale: without it
             there is no telling how long a limb is.
+
+    Attributes:
+        channels: numbers in a frame.
     """
+
+    channels = CHANNELS
 
     def __init__(
         self,
@@ -114,11 +119,12 @@ class Network(nn.Module):
     ) -> None:
         super().__init__()
         a, b = widths
+        channels = self.channels
         self.text = TextEncoder(words, condition)
         self.time = nn.Sequential(
             nn.Linear(64, condition), nn.SiLU(), nn.Linear(condition, condition)
         )
-        self.enter = nn.Conv1d(CHANNELS + 2, a, 4, 2, 1)
+        self.enter = nn.Conv1d(channels + 2, a, 4, 2, 1)
         self.half_in = nn.ModuleList([Block(a, a, condition), Block(a, a, condition)])
         self.to_quarter = nn.Conv1d(a, b, 4, 2, 1)
         self.quarter = nn.ModuleList([Block(b, b, condition), Block(b, b, condition)])
@@ -126,10 +132,10 @@ class Network(nn.Module):
         self.from_quarter = nn.Conv1d(b, a, 1)
         self.half_out = nn.ModuleList([Block(2 * a, a, condition), Block(a, a, condition)])
         self.leave = nn.Sequential(
-            nn.GroupNorm(8, a), nn.SiLU(), nn.Conv1d(a, CHANNELS, 3, padding=1)
+            nn.GroupNorm(8, a), nn.SiLU(), nn.Conv1d(a, channels, 3, padding=1)
         )
-        self.smooth = nn.Conv1d(CHANNELS, COPIES * CHANNELS, 8, 2, 3, groups=CHANNELS)
-        self.gate = nn.Linear(condition, COPIES * CHANNELS)
+        self.smooth = nn.Conv1d(channels, COPIES * channels, 8, 2, 3, groups=channels)
+        self.gate = nn.Linear(condition, COPIES * channels)
         self.add_up: torch.Tensor
         self.take_apart: torch.Tensor
         self.spline: torch.Tensor
@@ -150,7 +156,7 @@ class Network(nn.Module):
         """
         frames = x.shape[1]
         condition = functional.silu(self.time(time_features(t, 64)) + self.text(ids))
-        seen = torch.cat([(self.take_apart @ x).flatten(2).mT, clock(x)], dim=1)
+        seen = torch.cat([self.see(x), clock(x)], dim=1)
         seen = functional.pad(seen, (0, -frames % 4), mode="replicate")
         # A body may be ten metres away and move by millimetres: half precision is for the middle.
         with torch.autocast(x.device.type, enabled=False):
@@ -160,10 +166,18 @@ class Network(nn.Module):
         h = self.quarter[1](self.attention(h), condition)
         h = through(self.half_out, torch.cat([half, twice(self.from_quarter(h))], 1), condition)
         with torch.autocast(x.device.type, enabled=False):
-            copies = self.smooth(seen[:, :CHANNELS]) * self.gate(condition.float()).unsqueeze(-1)
-            points = self.leave(h.float()) + copies.unflatten(1, (CHANNELS, COPIES)).sum(2)
-            bones = draw(points, self.spline)[..., :frames].mT.unflatten(-1, (N_JOINTS, 3))
-            return self.add_up @ self.even_limbs(bones, t)
+            loud = self.gate(condition.float()).unsqueeze(-1)
+            copies = self.smooth(seen[:, : self.channels]) * loud
+            points = self.leave(h.float()) + copies.unflatten(1, (self.channels, COPIES)).sum(2)
+            return self.say(draw(points, self.spline)[..., :frames].mT, t)
+
+    def see(self, x: torch.Tensor) -> torch.Tensor:
+        """Motions as channels over time, ``(batch, channels, frames)``: bone by bone."""
+        return (self.take_apart @ x).flatten(2).mT
+
+    def say(self, curves: torch.Tensor, t: torch.Tensor) -> torch.Tensor:
+        """Motions from what was drawn, ``(batch, frames, channels)``."""
+        return self.add_up @ self.even_limbs(curves.unflatten(-1, (N_JOINTS, 3)), t)
 
     def even_limbs(self, bones: torch.Tensor, t: torch.Tensor) -> torch.Tensor:
         """Give every limb its mean length in all frames, the more so the less noise is left.

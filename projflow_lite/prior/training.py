@@ -1,9 +1,4 @@
-r"""Teach the tiny flow: from a seed, with a log, losing a minute at most when interrupted.
-
-The network predicts :math:`x_1`, so the flow-matching loss (ProjFlow eq. 3) becomes
-
-.. math:: \lVert v_\theta - (x_1 - x_0) \rVert^2
-          = \frac{\lVert \hat x_1 - x_1 \rVert^2}{(1 - t)^2}.
+"""Teach the tiny flow: from a seed, with a log, losing a minute at most when interrupted.
 
 Everything random in step k comes from the seed and k alone: a run that was stopped and resumed
 makes the same steps as one that was not.
@@ -20,6 +15,7 @@ from copy import deepcopy
 from dataclasses import asdict, dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -28,24 +24,18 @@ from tqdm.auto import tqdm
 from data_synth import make_clips
 from data_synth.captions import phrases
 from projflow_lite.prior.checkpoint import load_prior, read, save_prior, write
+from projflow_lite.prior.loss import FEET, loss_of
 from projflow_lite.prior.loss_log import LossLog
 from projflow_lite.prior.model import Prior
-from projflow_lite.prior.network import Network
 from projflow_lite.prior.processes import Processes, join
 from projflow_lite.prior.signals import undivided
 from projflow_lite.prior.text import Vocabulary
-from projflow_lite.skeleton import JOINTS, N_JOINTS, PARENTS
 
 ROUNDS = 12
 """Batches of each length that are made at once."""
 
 REUSE = 3
 """How often a batch is shown, each time with other noise: making clips costs a third of a step."""
-
-FEET = 8.0
-"""How much ankles and toes count in the second round of a recipe, where others count 1."""
-
-FOOT_JOINTS = tuple(k for k, name in enumerate(JOINTS) if name.endswith(("_ankle", "_foot")))
 
 SAVE_EVERY = 60.0
 """Seconds between two checkpoints."""
@@ -87,65 +77,16 @@ class Recipe:
         """Whether a step belongs to the second round."""
         return 0 < self.restart <= step
 
+    def trainer(self, here: Processes | None = None) -> Trainer:
+        """A new run of this recipe."""
+        return Trainer(self, here)
+
 
 RECIPES = {
     "smoke": Recipe(steps=20, batch=8, widths=(16, 24)),
     "classroom": Recipe(steps=2000, bfloat16=True),
     "shipped": Recipe(steps=17000, restart=12000, bfloat16=True),
 }
-
-
-def flow_times(count: int, random: torch.Generator) -> torch.Tensor:
-    """Draw flow times, ``(count,)``, where there is most to learn.
-
-    Most lean to 1: the noise is a metre wide and limbs move by decimetres, so they are decided
-    late. But a fifth crowds at 0: there the state says nothing yet, and only the prompt can tell a
-    run from a step on the spot. Without them the prompt is ignored just when it matters.
-    """
-    late = torch.sigmoid(torch.randn(count, generator=random) * 1.2 + 1.0)
-    early = 0.2 * torch.rand(count, generator=random) ** 3
-    return torch.where(torch.rand(count, generator=random) < 0.2, early, late)
-
-
-def loss_of(
-    network: Network,
-    u1: torch.Tensor,
-    ids: torch.Tensor,
-    random: torch.Generator,
-    feet: float = 1.0,
-    part: slice = slice(None),
-) -> torch.Tensor:
-    """Flow-matching loss of a batch of motions.
-
-    Besides positions, the error of velocities and of bone vectors is counted, and feet may count
-    more than the rest: a swinging foot that is two centimetres too low slides over the ground. All
-    is a quadratic form of the same error, so the best prediction stays the conditional mean.
-
-    Args:
-        network: what is trained.
-        u1: ``(batch, frames, 22, 3)`` clean motions, centred and scaled.
-        ids: ``(batch, words)`` their prompts.
-        random: where flow times and noise are drawn from.
-        feet: how much ankles and toes count, where other joints count 1.
-        part: the motions that this process answers for. Times and noise are drawn for all, so
-            that they are the same for any number of processes.
-    """
-    t = flow_times(len(u1), random)
-    u0 = torch.randn(u1.shape, generator=random)
-    u0, u1, t, ids = (each[part].to(u1.device) for each in (u0, u1, t, ids))
-    share = t.view(-1, 1, 1, 1)
-    error = network((1 - share) * u0 + share * u1, t, ids) - u1
-    bones = error[:, :, 1:] - error[:, :, list(PARENTS[1:])]
-    weight = torch.ones(N_JOINTS, 1, device=error.device)
-    weight[list(FOOT_JOINTS)] = feet
-    weight = weight / weight.mean()
-    quadratic = (
-        (weight * error.square()).mean((1, 2, 3))
-        + 2 * (weight * error.diff(dim=1).square()).mean((1, 2, 3))
-        + 2 * bones.square().mean((1, 2, 3))
-    )
-    # Eq. 3 divides by (1 - t)^2; the small constant keeps the last moments from drowning the rest.
-    return (quadratic / ((1 - t).square() + 0.005)).mean()
 
 
 def learning_rate(recipe: Recipe, step: int) -> float:
@@ -161,9 +102,13 @@ def learning_rate(recipe: Recipe, step: int) -> float:
 
 
 @cache
-def scale_of_data(seed: int) -> tuple[torch.Tensor, float]:
+def look_at_data(seed: int) -> torch.Tensor:
+    """Motions to find the scale of data with, ``(2048, 60, 22, 3)`` metres."""
+    return torch.as_tensor(make_clips(2048, frames=60, seed=seed).positions)
+
+
+def scale_of(positions: torch.Tensor) -> tuple[torch.Tensor, float]:
     """Mean position of every joint, ``(22, 3)`` metres, and the spread around it, metres."""
-    positions = torch.as_tensor(make_clips(2048, frames=60, seed=seed).positions)
     mean = positions.mean((0, 1))
     return mean, float((positions - mean).square().mean().sqrt())
 
@@ -184,19 +129,26 @@ class Trainer:
         self.here = here or Processes()
         self.part = self.here.part(recipe.batch)
         torch.manual_seed(recipe.seed)
-        mean, noise_std = scale_of_data(recipe.seed)
-        self.prior = Prior(
-            Vocabulary.of(phrases()),
-            mean,
-            noise_std,
-            (min(recipe.lengths), max(recipe.lengths)),
-            {"widths": list(recipe.widths)},
-            asdict(recipe),
-        )
+        self.prior = self.untrained()
         self.network = self.prior.network.to(self.here.device)
         self.average = {k: v.detach().clone() for k, v in self.network.named_parameters()}
         self.optimiser = torch.optim.AdamW(self.network.parameters(), weight_decay=0.01, fused=True)
         self.chunk: tuple[int, list[tuple[torch.Tensor, torch.Tensor]]] | None = None
+
+    def untrained(self, kind: type[Prior] = Prior) -> Prior:
+        """The prior that the run begins with."""
+        recipe = self.recipe
+        return kind(
+            Vocabulary.of(phrases()),
+            *scale_of(self.states(look_at_data(recipe.seed))),
+            (min(recipe.lengths), max(recipe.lengths)),
+            {"widths": list(recipe.widths)},
+            asdict(recipe),
+        )
+
+    def states(self, motions: torch.Tensor) -> torch.Tensor:
+        """What of motions ``(clips, frames, 22, 3)`` the flow is on: all of it."""
+        return motions
 
     def batch(self) -> tuple[torch.Tensor, torch.Tensor]:
         """Motions and prompts of the current step, those of all processes."""
@@ -214,7 +166,8 @@ class Trainer:
     def clips(self, frames: int, random: np.random.Generator) -> tuple[torch.Tensor, torch.Tensor]:
         """Fresh motions of one length, centred and scaled, and their prompts, some left out."""
         made = make_clips(self.recipe.batch * ROUNDS, frames, seed=int(random.integers(2**31)))
-        u1 = (torch.as_tensor(made.positions) - self.prior.mean) / self.prior.noise_std
+        states = self.states(torch.as_tensor(made.positions))
+        u1 = (states - self.prior.mean) / self.prior.noise_std
         dropped = random.random(len(u1)) < self.recipe.prompt_dropout
         prompts = [None if d else c for c, d in zip(made.captions, dropped, strict=True)]
         return u1, self.prior.vocabulary.encode(prompts)
@@ -290,6 +243,14 @@ class Trainer:
         prior.network.load_state_dict(self.average, strict=False)
         return prior.eval().requires_grad_(False)
 
+    def write(self, path: Path) -> None:
+        """Store what the run has led to."""
+        save_prior(self.result(), path)
+
+    def read(self, path: Path) -> Any:
+        """Load what `write` has stored."""
+        return load_prior(path)
+
 
 def part_of(tensors: dict[str, torch.Tensor], prefix: str) -> dict[str, torch.Tensor]:
     """The tensors whose name begins with `prefix`, without it."""
@@ -308,7 +269,7 @@ def begin(recipe: Recipe, folder: str | Path) -> Trainer:
             cannot be shared equally among the processes.
     """
     folder = Path(folder)
-    trainer = Trainer(recipe, join())
+    trainer = recipe.trainer(join())
     folder.mkdir(parents=True, exist_ok=True)
     if (folder / "run.safetensors").exists():
         trainer.resume(folder / "run.safetensors")
@@ -345,13 +306,13 @@ def steps_of(trainer: Trainer, folder: str | Path) -> Generator[float, None, Non
             trainer.save(run)
 
 
-def finish(trainer: Trainer, folder: str | Path) -> Prior:
+def finish(trainer: Trainer, folder: str | Path) -> Any:
     """Write the prior that a run has led to, and load it."""
     path = Path(folder) / "prior.safetensors"
     if trainer.here.first:
-        save_prior(trainer.result(), path)
+        trainer.write(path)
     trainer.here.wait()
-    return load_prior(path)
+    return trainer.read(path)
 
 
 def train(
@@ -359,7 +320,7 @@ def train(
     folder: str | Path,
     progress: bool = True,
     on_step: Callable[[int, float], None] | None = None,
-) -> Prior:
+) -> Any:
     """Train a prior, or go on with a run that was interrupted.
 
     Args:
@@ -370,7 +331,7 @@ def train(
         on_step: called with the number of steps made and the loss of the last one.
 
     Returns:
-        The trained prior.
+        The trained prior, of the kind that the recipe makes.
 
     Raises:
         ValueError: if the folder holds a damaged run, or one of another recipe; or if a batch

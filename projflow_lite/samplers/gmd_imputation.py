@@ -2,8 +2,12 @@ r"""Imputation: overwrite what is known of a predicted motion (GMD section 4.1 (
 
 .. math:: \tilde x_1 = (1 - M) \odot \hat x_1 + M \odot y
 
-Nothing else moves: where ProjFlow's metric spreads a correction over the body, this one leaves the
-body behind, and hopes that the network will follow in the steps to come.
+Nothing else moves: where ProjFlow's metric spreads a correction over the body, this one hopes that
+the network will follow in the steps to come. What it leaves behind depends on what a motion is
+written in. Of joint positions the pelvis is one, and leaves the body. GMD's features say where the
+pelvis is, and where other joints are as seen from it: there the body goes along, as it is, and its
+feet slide. The latter is also a projection, with a metric in which limbs that keep their places as
+seen from the pelvis cost nothing.
 """
 
 from __future__ import annotations
@@ -26,18 +30,29 @@ class Imputation:
         mask: ``(frames, joints, 3)`` booleans, True where a coordinate is known.
         values: same shape, or one set for each motion ``(batch, frames, joints, 3)``; metres,
             anything finite where the mask is False.
+        along: whether the body goes along with its pelvis, as it does in GMD's features.
     """
 
-    def __init__(self, mask: torch.Tensor, values: torch.Tensor) -> None:
-        self.mask, self.values = mask, values
+    def __init__(self, mask: torch.Tensor, values: torch.Tensor, along: bool = False) -> None:
+        self.mask, self.values, self.along = mask, values, along
 
     def __call__(self, x1_hat: torch.Tensor) -> torch.Tensor:
         """Overwrite ``(batch, frames, joints, 3)``."""
-        return torch.where(self.mask, self.values, x1_hat)
+        moved = x1_hat + self.of_pelvis(self.values - x1_hat) if self.along else x1_hat
+        return torch.where(self.mask, self.values, moved)
 
     def protect(self, push: torch.Tensor) -> torch.Tensor:
         """Set a push to 0 wherever something is imputed."""
-        return torch.where(self.mask, 0.0, push)
+        free = push - self.of_pelvis(push) if self.along else push
+        return torch.where(self.mask, 0.0, free)
+
+    def of_pelvis(self, change: torch.Tensor) -> torch.Tensor:
+        """How the pelvis changes where it is known, 0 elsewhere: ``(batch, frames, 1, 3)``."""
+        return torch.where(self.mask[:, :1], change[..., :1, :], 0.0)
+
+    def taking_along(self, along: bool) -> Imputation:
+        """The same with the body going along, or not."""
+        return Imputation(self.mask, self.values, along)
 
     def miss(self, x: torch.Tensor, p: float = 1.0) -> torch.Tensor:
         r"""How far motions are from what is known, ``(batch,)``: GMD eq. 12.
@@ -51,7 +66,8 @@ class Imputation:
 
     def over(self, other: Imputation) -> Imputation:
         """Both, and where both know a coordinate, this one."""
-        return Imputation(self.mask | other.mask, self(other.values))
+        values = torch.where(self.mask, self.values, other.values)
+        return Imputation(self.mask | other.mask, values, self.along)
 
     def line(self) -> Imputation:
         """Straight lines over the ground between keyframes of the pelvis; what is known stays.

@@ -15,6 +15,7 @@ from projflow_lite.studies import (
     control,
     data_card,
     fewer_steps,
+    gmd_table,
     lifting,
     noise_reading,
     posterior,
@@ -87,6 +88,16 @@ def run_fewer_steps(wanted: Wanted) -> dict[str, Any]:
     return shown("fewer-steps", fewer_steps, rows, wanted)
 
 
+def run_gmd_table(wanted: Wanted) -> dict[str, Any]:
+    """GMD beside ProjFlow: the same clips, the same keyframes, from one to all."""
+    rows = gmd_table.run(gmd_table.load_models(load_prior(wanted.prior)), wanted.quick)
+    print(gmd_table.table(rows))
+    pictures = wanted.out / "pictures"
+    pictures.mkdir(parents=True, exist_ok=True)
+    picture = gmd_table.figure(rows, pictures / "gmd-table.png")
+    return {"picture": str(picture), "rows": rows}
+
+
 def run_data_card(wanted: Wanted) -> dict[str, Any]:
     """What the synthetic motion is like, beside recorded motion if its file is given."""
     return data_card.run(wanted.out, wanted.real, wanted.quick)
@@ -97,6 +108,7 @@ STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
     "control": run_control,
     "data-card": run_data_card,
     "fewer-steps": run_fewer_steps,
+    "gmd-table": run_gmd_table,
     "lifting": run_lifting,
     "noise-reading": run_noise_reading,
     "posterior": run_posterior,

@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 
 from data_synth import held_out
 from projflow_lite.motion import Motion
+from projflow_lite.prior.loss import loss_of
 from projflow_lite.prior.loss_log import read_loss
 from projflow_lite.prior.model import Prior
-from projflow_lite.prior.training import Recipe, begin, finish, loss_of, steps_of
+from projflow_lite.prior.training import Recipe, begin, finish, steps_of
 from projflow_lite.widgets.answering import status_line
 from projflow_lite.widgets.board import Board
 from projflow_lite.widgets.viewer import Viewer
