@@ -56,7 +56,7 @@ def build_parser() -> argparse.ArgumentParser:
 
     score = commands.add_parser("score", help="judge a prior against held-out motion")
     score.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
-    score.add_argument("--classroom", type=Path, help="a second checkpoint, for a row of its own")
+    score.add_argument("--classroom", type=Path, help="a second checkpoint, to judge beside it")
     score.add_argument("--quick", action="store_true", help="two minutes, wide intervals")
     score.add_argument(
         "--folder",
@@ -151,14 +151,16 @@ def run_score(options: argparse.Namespace) -> dict:
     if options.blind:
         page, key = blind_page.run(prior, options.blind, options.real)
         return {"page": str(page), "key": str(key)}
-    other = load_prior(options.classroom) if options.classroom else None
-    rows = score_prior.run(prior, quick=options.quick, classroom=other, folder=options.folder)
+    rows = score_prior.run(prior, quick=options.quick, folder=options.folder)
     print(score_prior_words.table(rows))
+    classroom = []
+    if options.classroom:
+        other = load_prior(options.classroom)
+        classroom = score_prior.beside(prior, other, quick=options.quick, folder=options.folder)
+        print("", score_prior_words.table(classroom), sep="\n")
     if options.out:
-        (options.out / "results").mkdir(parents=True, exist_ok=True)
-        (options.out / "results" / "prior-card.json").write_text(json.dumps(rows, indent=1) + "\n")
-        (options.out / "prior-card.md").write_text(score_prior_words.card(rows, prior.recipe))
-    return {"rows": rows}
+        score_prior_words.write_card(options.out, rows, classroom, prior.recipe)
+    return {"rows": rows, "classroom": classroom}
 
 
 def run_derive(options: argparse.Namespace) -> dict:
@@ -201,7 +203,7 @@ def main(arguments: list[str] | None = None) -> int:
     if os.environ.get("RANK", "0") != "0":  # one of several processes that train: the first speaks
         return numbers.get("exit_code", 0)
     for name, value in numbers.items():
-        if name not in ("rows", "as_printed", "exit_code"):
+        if name not in ("rows", "classroom", "as_printed", "exit_code"):
             print(f"{name}: {value}")
     if options.json:
         options.json.write_text(json.dumps(numbers, indent=2) + "\n")

@@ -84,7 +84,13 @@ class Recipe:
 
 RECIPES = {
     "smoke": Recipe(steps=20, batch=8, widths=(16, 24)),
-    "classroom": Recipe(steps=2000, bfloat16=True),
+    "classroom": Recipe(
+        steps=4000,
+        learning_rate=1e-3,
+        lengths=(20, 60, 40, 60, 80),
+        widths=(128, 192),
+        bfloat16=True,
+    ),
     "shipped": Recipe(steps=17000, restart=12000, bfloat16=True),
 }
 

@@ -16,11 +16,13 @@ from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import numpy as np
+import torch
 from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
 from data_synth import held_out
 from projflow_lite.prior import Prior
+from projflow_lite.prior.network import draw, spline_kernel
 from projflow_lite.samplers import sample
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import interval, load_evaluator, multimodality, score_clips
@@ -31,6 +33,8 @@ QUICK: dict[str, Any] = {"clips": 3 * BATCH, "repetitions": 2, "steps": (25,)}
 
 PROMPTS, QUICK_PROMPTS, SAMPLES = 12, 4, 10
 """Multimodality: this many prompts, and motions for each. The papers take 100 prompts."""
+
+REPETITIONS = 8
 
 COLUMNS = (
     "FID", "kinetic distance", "R top 1", "R top 2", "R top 3", "matching", "diversity",
@@ -45,8 +49,14 @@ class Sample(NamedTuple):
     captions: list[str]
 
 
+SPLINES = "data as splines"
+
+
 class Row(NamedTuple):
-    """A row of the table: who makes the motions, in how many steps; nobody for the data itself."""
+    """A row of the table: who makes the motions, in how many steps.
+
+    Nobody does for the data itself, and for the curves nearest to it that the network could draw.
+    """
 
     name: str
     prior: Velocity | None
@@ -56,11 +66,10 @@ class Row(NamedTuple):
 def run(
     prior: Velocity,
     clips: int = 192,
-    repetitions: int = 3,
+    repetitions: int = REPETITIONS,
     steps: tuple[int, ...] = (25, 50, 100),
     quick: bool = False,
     progress: bool = True,
-    classroom: Velocity | None = None,
     folder: Path | None = None,
 ) -> list[dict[str, Any]]:
     """Score a prior.
@@ -73,7 +82,6 @@ def run(
         quick: two repetitions of 192 clips at 25 steps, instead of the three numbers above. A
             first look: its intervals are wide.
         progress: show a progress bar.
-        classroom: another prior, for a row of its own with the first number of steps.
         folder: where results are stored as they are made; a run that was interrupted goes on
             there. None stores nothing.
 
@@ -88,19 +96,48 @@ def run(
     if quick:
         clips, repetitions, steps = QUICK["clips"], QUICK["repetitions"], QUICK["steps"]
     check(clips, repetitions, steps)
+    rows = [Row(SPLINES, None, None), *(Row(f"{count} steps", prior, count) for count in steps)]
     court = Court(lengths_of(prior), clips, QUICK_PROMPTS if quick else PROMPTS)
-    rows = [Row(DATA, None, None), *(Row(f"{count} steps", prior, count) for count in steps)]
-    if classroom is not None:
-        rows.append(Row(f"classroom, {steps[0]} steps", classroom, steps[0]))
+    return judged(court, rows, repetitions, progress, folder)
+
+
+def beside(
+    prior: Velocity,
+    other: Velocity,
+    clips: int = 192,
+    repetitions: int = REPETITIONS,
+    steps: int = 25,
+    quick: bool = False,
+    progress: bool = True,
+    folder: Path | None = None,
+) -> list[dict[str, Any]]:
+    """Score two priors, shipped and classroom, on motions of lengths that both know.
+
+    Arguments, records and errors are those of `run`.
+    """
+    if quick:
+        clips, repetitions, steps = QUICK["clips"], QUICK["repetitions"], QUICK["steps"][0]
+    check(clips, repetitions, (steps,))
+    rows = [Row("shipped", prior, steps), Row("classroom", other, steps)]
+    court = Court(lengths_of(prior, other), clips, QUICK_PROMPTS if quick else PROMPTS)
+    return judged(court, rows, repetitions, progress, folder)
+
+
+def judged(
+    court: Court, made: list[Row], repetitions: int, progress: bool, folder: Path | None
+) -> list[dict[str, Any]]:
+    """The records of some rows, after those of held-out data."""
+    rows = [Row(DATA, None, None), *made]
     measured: dict[Row, list[dict[str, float]]] = {row: [] for row in rows}
-    batches = repetitions * len(rows[1:]) * (clips + court.prompts * SAMPLES)
-    with tqdm(total=batches, disable=not progress, unit="clip") as bar:
+    sampled = sum(row.prior is not None for row in made)
+    total = repetitions * sampled * (court.clips + court.prompts * SAMPLES)
+    with tqdm(total=total, disable=not progress, unit="clip") as bar:
         for repetition, row in itertools.product(range(repetitions), rows):
             measure = partial(court.judge, row, repetition, bar)
             path = folder and folder / place_of(row, court) / f"repetition-{repetition}.json"
             measured[row].append(stored(path, measure) if path else measure())
     about = {
-        "clips": clips, "repetitions": repetitions, "prompts": court.prompts,
+        "clips": court.clips, "repetitions": repetitions, "prompts": court.prompts,
         "lengths": court.lengths,
     }  # fmt: skip
     return [
@@ -115,7 +152,7 @@ def place_of(row: Row, court: Court) -> str:
     """A folder's name that tells one prior, number of steps and size of a run from others."""
     extent = f"{court.clips}-clips-{court.prompts}-prompts-{'-'.join(map(str, court.lengths))}"
     if row.prior is None:
-        return f"data-{extent}"
+        return f"{'data' if row.name == DATA else 'splines'}-{extent}"
     return f"{fingerprint(cast(Prior, row.prior))}-{row.steps}-steps-{extent}"
 
 
@@ -151,6 +188,8 @@ class Court:
         if row.prior is not None and row.steps is not None:
             made = generate(row.prior, made, row.steps, 2 * repetition, bar)
             again = generate(row.prior, again, row.steps, 2 * repetition + 1, bar)
+        elif row.name == SPLINES:
+            made, again = as_splines(made), as_splines(again)
         scores = score_clips(made.positions, made.captions, self.reference, seed=repetition)
         points = load_evaluator().embed_motion(again.positions).reshape(-1, SAMPLES, 64)
         return scores | {"multimodality": multimodality(points, seed=repetition)}
@@ -164,9 +203,10 @@ def check(clips: int, repetitions: int, steps: tuple[int, ...]) -> None:
         raise ValueError("score_prior: at least one repetition, and one step in every row")
 
 
-def lengths_of(prior: Velocity) -> list[int]:
-    """Short, medium and long, of what a prior makes."""
-    shortest, longest = getattr(prior, "lengths", (40, 80))
+def lengths_of(*priors: Velocity) -> list[int]:
+    """Short, medium and long, of what all of some priors make."""
+    known = [getattr(prior, "lengths", (40, 80)) for prior in priors]
+    shortest, longest = max(low for low, _ in known), min(high for _, high in known)
     return sorted({round(x) for x in np.linspace(max(20, shortest), min(196, longest), 3)})
 
 
@@ -203,6 +243,24 @@ def repeated(frames: int, prompts: int, seed: int, pool: int | None = None) -> S
     texts = np.array(data.captions)
     places = [k for text in chosen for k in np.flatnonzero(texts == text)[:SAMPLES]]
     return Sample([data.positions[k] for k in places], [data.captions[k] for k in places])
+
+
+def as_splines(sample: Sample) -> Sample:
+    """The same clips, each as the nearest curves that the network could draw."""
+    return Sample([nearest_splines(clip) for clip in sample.positions], sample.captions)
+
+
+def nearest_splines(positions: NDArray) -> NDArray:
+    """Curves with a control point every two frames, nearest to a clip ``(frames, 22, 3)``.
+
+    What they lack no training can teach: see `projflow_lite.prior.network.draw`.
+    """
+    frames = len(positions)
+    points = 2 * -(-frames // 4)  # as many as the network has
+    basis = draw(torch.eye(points)[:, None], spline_kernel())[:, 0, :frames].double().numpy().T
+    flat = positions.reshape(frames, -1)
+    best = np.linalg.lstsq(basis, flat, rcond=None)[0]
+    return (basis @ best).reshape(positions.shape)
 
 
 def generate(prior: Velocity, like: Sample, steps: int, seed: int, bar: tqdm) -> Sample:

@@ -57,7 +57,12 @@ def rows(tmp_path_factory):
 
 
 def test_a_row_for_the_data_and_one_for_every_number_of_steps(rows):
-    assert [row["row"] for row in rows] == ["held-out data", "1 steps", "2 steps"]
+    assert [row["row"] for row in rows] == [
+        "held-out data",
+        "data as splines",
+        "1 steps",
+        "2 steps",
+    ]
     for row in rows:
         assert tuple(row["scores"]) == COLUMNS
         for cell in row["scores"].values():
@@ -65,7 +70,7 @@ def test_a_row_for_the_data_and_one_for_every_number_of_steps(rows):
 
 
 def test_held_out_data_is_the_floor_and_noise_is_far_above_it(rows):
-    data, noise = rows[0]["scores"], rows[1]["scores"]
+    data, noise = rows[0]["scores"], rows[2]["scores"]
     assert all(cell["ratio"] == 1 for name, cell in data.items() if name != "bone error %")
     assert data["bone error %"]["mean"] < 0.01
     assert data["R top 3"]["mean"] > 0.5
@@ -74,21 +79,37 @@ def test_held_out_data_is_the_floor_and_noise_is_far_above_it(rows):
     assert noise["R top 3"]["mean"] < 0.5 * data["R top 3"]["mean"]
 
 
-def test_a_second_prior_has_a_row_and_an_interrupted_run_goes_on(rows, tmp_path, monkeypatch):
+def test_curves_of_the_network_are_near_the_data_and_smoother(rows):
+    data, curves = rows[0]["scores"], rows[1]["scores"]
+    assert curves["FID"]["mean"] < 2 * data["FID"]["mean"]
+    assert 0.5 < curves["jerk"]["ratio"] < 1
+    assert curves["bone error %"]["mean"] > data["bone error %"]["mean"]
+
+
+@pytest.mark.parametrize("frames", [24, 30, 33])
+def test_the_nearest_curves_are_curves_and_nearer_than_others(frames):
+    clip = held_out(1, frames, 5).positions[0]
+    best = score_prior.nearest_splines(clip)
+    assert best.shape == clip.shape
+    assert np.allclose(score_prior.nearest_splines(best), best)  # they are curves already
+    random = np.random.default_rng(0).normal(size=(7, *clip.shape))
+    for other in random:
+        near = best + 1e-3 * score_prior.nearest_splines(other)
+        assert np.square(near - clip).sum() > np.square(best - clip).sum()
+
+
+def test_an_interrupted_run_goes_on(rows, tmp_path, monkeypatch):
     prior = train(SMOKE, tmp_path / "run", progress=False)
-    other = train(replace(SMOKE, seed=1), tmp_path / "other", progress=False)
     made, generate = [], score_prior.generate
 
     def counting(*given):
-        if len(made) == 3:
+        if len(made) == 2:
             raise KeyboardInterrupt
         made.append(given[0])
         return generate(*given)
 
     def run():
-        return score_prior.run(
-            prior, 64, 2, (1, 2), progress=False, classroom=other, folder=tmp_path / "cells"
-        )
+        return score_prior.run(prior, 64, 2, (1, 2), progress=False, folder=tmp_path / "cells")
 
     monkeypatch.setattr(score_prior, "generate", counting)
     with pytest.raises(KeyboardInterrupt):
@@ -98,10 +119,17 @@ def test_a_second_prior_has_a_row_and_an_interrupted_run_goes_on(rows, tmp_path,
         score_prior, "generate", lambda *given: made.append(given) or generate(*given)
     )
     resumed = run()
-    assert len(made) == 2 * (2 * 3 - 1), "one row of one repetition was there"
-    assert resumed[:3] == rows
-    assert resumed[3]["row"] == "classroom, 1 steps"
-    assert resumed[3]["scores"]["jerk"]["mean"] != rows[1]["scores"]["jerk"]["mean"]
+    assert len(made) == 2 * (2 * 2 - 1), "one row of one repetition was there"
+    assert resumed == rows
+
+
+def test_two_priors_are_asked_for_lengths_that_both_know(tmp_path):
+    prior = train(SMOKE, tmp_path / "run", progress=False)
+    other = train(replace(SMOKE, seed=1, lengths=(20, 40)), tmp_path / "other", progress=False)
+    data, one, two = score_prior.beside(prior, other, 64, 2, 1, progress=False)
+    assert [row["row"] for row in (data, one, two)] == ["held-out data", "shipped", "classroom"]
+    assert data["lengths"] == [40]
+    assert one["scores"]["jerk"]["mean"] != two["scores"]["jerk"]["mean"]
 
 
 def test_every_row_and_bar_has_a_verdict_in_the_table(rows):
@@ -113,8 +141,9 @@ def test_every_row_and_bar_has_a_verdict_in_the_table(rows):
 
 
 def test_the_card_holds_every_number_of_the_table(rows):
-    card = score_prior_words.card(rows, {"steps": 2, "batch": 8})
+    card = score_prior_words.card(rows, [], {"steps": 2, "batch": 8})
     assert "trained for 2 steps of 8 clips" in card
+    assert "ten minutes" not in card
     for row in rows:
         for name in COLUMNS:
             assert score_prior_words.shown(row["scores"][name]) in card
@@ -122,19 +151,28 @@ def test_the_card_holds_every_number_of_the_table(rows):
         assert f"- {line}\n" in card
 
 
+def test_the_card_compares_the_recipes(rows):
+    two = [rows[0], rows[2] | {"row": "shipped"}, rows[3] | {"row": "classroom"}]
+    card = score_prior_words.card(rows, two, {"steps": 2, "batch": 8})
+    for line in score_prior_words.verdicts(two):
+        assert (f"- {line}\n" in card) == line.startswith("classroom")
+
+
 def test_the_card_in_the_book_is_written_from_its_numbers():
-    rows = json.loads((BOOK / "results" / "prior-card.json").read_text())
+    found = json.loads((BOOK / "results" / "prior-card.json").read_text())
     recipe = json.loads(json.dumps(asdict(RECIPES["shipped"])))
-    assert (BOOK / "prior-card.md").read_text() == score_prior_words.card(rows, recipe)
+    assert (BOOK / "prior-card.md").read_text() == score_prior_words.card(
+        found["shipped"], found["classroom"], recipe
+    )
 
 
 def test_a_prior_that_copies_data_of_its_kind_meets_the_bars_of_physics():
     rows = score_prior.run(Copyist(), 64, 2, (1,), progress=False)
-    cells = rows[1]["scores"]
+    cells = rows[2]["scores"]
     assert cells["bone error %"]["mean"] < 0.01
     assert cells["jerk"]["ratio"] == pytest.approx(1, abs=0.25)
     assert cells["multimodality"]["ratio"] == pytest.approx(1, abs=0.5)
-    spoiled = score_prior.run(Copyist(spoil=0.05), 64, 1, (1,), progress=False)[1]["scores"]
+    spoiled = score_prior.run(Copyist(spoil=0.05), 64, 1, (1,), progress=False)[2]["scores"]
     assert spoiled["jerk"]["mean"] > 3 * cells["jerk"]["mean"]
     assert spoiled["kinetic distance"]["mean"] > 3 * cells["kinetic distance"]["mean"]
 
@@ -157,7 +195,7 @@ def cell(mean, half, ratio, ratio_half):
 )
 def test_verdicts_say_what_the_numbers_say(score, values, expected):
     bar = next(bar for bar in BARS if bar.score == score)
-    row = {"row": "25 steps", "scores": {score: cell(*values)}}
+    row = {"row": "25 steps", "steps": 25, "scores": {score: cell(*values)}}
     assert score_prior_words.sentence(row, bar).endswith(expected)
 
 
@@ -190,7 +228,9 @@ def test_samples_differ_by_seed_and_mix_lengths():
 def test_lengths_are_those_the_prior_was_trained_on():
     assert score_prior.lengths_of(Copyist()) == [40]
     prior = type("P", (), {"lengths": (40, 80)})()
+    other = type("P", (), {"lengths": (20, 60)})()
     assert score_prior.lengths_of(prior) == [40, 60, 80]
+    assert score_prior.lengths_of(prior, other) == [40, 50, 60]
     assert score_prior.lengths_of(lambda x_t, t, text=None: x_t) == [40, 60, 80]
 
 
