@@ -74,6 +74,10 @@ LOWER_BODY: tuple[str, ...] = tuple(
 UPPER_BODY: tuple[str, ...] = tuple(name for name in JOINTS if name not in LOWER_BODY)
 """Spine, head and arms."""
 
+ANKLES: tuple[int, int] = (JOINTS.index("left_ankle"), JOINTS.index("right_ankle"))
+FEET: tuple[int, int] = (JOINTS.index("left_foot"), JOINTS.index("right_foot"))
+"""Indices of the balls of the feet: the joints that slide."""
+
 # Share of a body's mass in each segment, the joints at its ends, and how far along it its centre
 # lies: Winter, Biomechanics and Motor Control of Human Movement; a hand counts at its wrist.
 SEGMENTS = (

@@ -13,12 +13,10 @@ from collections.abc import Callable
 import torch
 
 from projflow_lite.prior.network import Network
-from projflow_lite.skeleton import JOINTS, N_JOINTS, PARENTS
+from projflow_lite.skeleton import ANKLES, FEET, N_JOINTS, PARENTS
 
-FEET = 8.0
+FOOT_WEIGHT = 8.0
 """How much ankles and toes count in the second round of a recipe, where others count 1."""
-
-FOOT_JOINTS = tuple(k for k, name in enumerate(JOINTS) if name.endswith(("_ankle", "_foot")))
 
 
 def flow_times(count: int, random: torch.Generator) -> torch.Tensor:
@@ -46,7 +44,7 @@ def size_of(error: torch.Tensor, feet: float = 1.0) -> torch.Tensor:
     """
     bones = error[:, :, 1:] - error[:, :, list(PARENTS[1:])]
     weight = torch.ones(N_JOINTS, 1, device=error.device)
-    weight[list(FOOT_JOINTS)] = feet
+    weight[list(ANKLES + FEET)] = feet
     weight = weight / weight.mean()
     return (
         (weight * error.square()).mean((1, 2, 3))

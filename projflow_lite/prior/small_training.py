@@ -15,7 +15,7 @@ from projflow_lite.prior import training
 from projflow_lite.prior.checkpoint import load_prior
 from projflow_lite.prior.emphasis import EmphasisedPrior, load_emphasised, save_emphasised
 from projflow_lite.prior.features import EMPHASISED, mixing_matrix, spreads_of
-from projflow_lite.prior.loss import FEET, loss_of, size_of
+from projflow_lite.prior.loss import FOOT_WEIGHT, loss_of, size_of
 from projflow_lite.prior.model import Prior
 from projflow_lite.prior.processes import Processes
 from projflow_lite.prior.training import Recipe, Trainer, look_at_data
@@ -95,7 +95,9 @@ class EmphasisTrainer(Trainer):
 
     def loss(self, u1: torch.Tensor, ids: torch.Tensor, random: torch.Generator) -> torch.Tensor:
         """The loss of the plain prior's second round, with other noise."""
-        return loss_of(self.network, u1, ids, random, FEET, self.part, self.colour, self.size)
+        return loss_of(
+            self.network, u1, ids, random, FOOT_WEIGHT, self.part, self.colour, self.size
+        )
 
     def write(self, path: Path) -> None:
         """Store the emphasised prior."""

@@ -24,7 +24,7 @@ from tqdm.auto import tqdm
 from data_synth import make_clips
 from data_synth.captions import phrases
 from projflow_lite.prior.checkpoint import load_prior, read, save_prior, write
-from projflow_lite.prior.loss import FEET, loss_of
+from projflow_lite.prior.loss import FOOT_WEIGHT, loss_of
 from projflow_lite.prior.loss_log import LossLog
 from projflow_lite.prior.model import Prior
 from projflow_lite.prior.processes import Processes, join
@@ -180,7 +180,7 @@ class Trainer:
 
     def loss(self, u1: torch.Tensor, ids: torch.Tensor, random: torch.Generator) -> torch.Tensor:
         """Loss of this process' part of a batch at the current step, see `loss_of`."""
-        feet = FEET if self.recipe.second_round(self.step) else 1.0
+        feet = FOOT_WEIGHT if self.recipe.second_round(self.step) else 1.0
         return loss_of(self.network, u1, ids, random, feet, self.part)
 
     def advance(self) -> float:

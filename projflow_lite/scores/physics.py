@@ -5,10 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from projflow_lite.skeleton import EDGES, FPS, JOINTS, bone_lengths, check_positions, shown
-
-FEET = (JOINTS.index("left_foot"), JOINTS.index("right_foot"))
-ANKLES = (JOINTS.index("left_ankle"), JOINTS.index("right_ankle"))
+from projflow_lite.skeleton import ANKLES, EDGES, FEET, FPS, bone_lengths, check_positions, shown
 
 HEEL_DROP = 0.05
 """Metres from the ankle joint of a flat foot down to its heel, which no joint marks."""

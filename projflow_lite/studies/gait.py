@@ -11,12 +11,11 @@ from data_synth.angles import joint_angles
 from data_synth.body import TOE_HEIGHT, assemble, sample_bones, standing_height
 from data_synth.gait import MARGIN, Gait, Path, path_of, walk_over
 from projflow_lite.scores import foot_skating
-from projflow_lite.skeleton import FPS, JOINTS
+from projflow_lite.skeleton import FEET, FPS
 
 FRAMES = 60
 PHASE = 0.1
 """Where in the cycle of its left foot a walk begins: that foot has just come down."""
-FEET = [JOINTS.index("left_foot"), JOINTS.index("right_foot")]
 PELVIS, LEFT, RIGHT = 0, 0, 1
 
 

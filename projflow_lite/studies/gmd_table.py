@@ -19,7 +19,7 @@ from tqdm.auto import tqdm
 from data_synth import Clips, held_out
 from projflow_lite.scores import control_errors, frechet_distance, interval
 from projflow_lite.scores.clips import physics
-from projflow_lite.skeleton import JOINTS, bone_lengths
+from projflow_lite.skeleton import FEET, bone_lengths
 from projflow_lite.studies.fewer_steps import Features, features_of, fingerprint, stored
 from projflow_lite.studies.gmd_figure import figure
 from projflow_lite.studies.gmd_ways import (
@@ -42,7 +42,6 @@ REFERENCE, WISHED, WALKED, OTHERS = 1000, 2000, 2500, 3000
 """Seeds of held-out clips: to compare with, to ask for, and what data itself scores."""
 
 DATA = "held-out data"
-FEET = [JOINTS.index("left_foot"), JOINTS.index("right_foot")]
 COLUMNS = {
     "keyframes": (
         "error, m", "location error %", "trajectory error %", "FID", "kinetic distance",
