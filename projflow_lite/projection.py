@@ -34,11 +34,9 @@ from projflow_lite.projection_checks import (
     holds,
 )
 from projflow_lite.row_blocks import (
-    blocks_of_rows,
     dense_blocks,
     independent_rows,
     name_nearest,
-    observed_covariance,
 )
 from projflow_lite.skeleton import EDGES, N_JOINTS, number_array, shown
 
@@ -92,7 +90,7 @@ class Projector:
         rows = check_rows(rows, dtype)
         self.given, self.dtype = len(rows.y), dtype
         covariance = np.linalg.inv(check_metric(metric))
-        self.keep, self.condition, worst = independent_rows(rows, covariance)
+        self.keep, self.condition, worst, groups, observed = independent_rows(rows, covariance)
         if self.condition > NEARLY_DEPENDENT:
             warnings.warn(
                 f"{name_nearest(rows, covariance, worst)} are nearly dependent: condition number "
@@ -104,8 +102,13 @@ class Projector:
         self.exact = torch.as_tensor(exact, device=device)
         self.pins = torch.as_tensor(rows.y[exact], dtype=dtype, device=device)
         # Block by block, so that the residual of a block is a slice and needs no gathering.
-        groups = blocks_of_rows(rows.A[self.keep])
-        order = np.concatenate([self.keep[:0], *(self.keep[index.T.ravel()] for index in groups)])
+        order = np.concatenate([self.keep[:0], *(block.T.ravel() for block in groups)])
+        self.blocks, first = [], 0
+        for block in groups:
+            own = slice(first, first + block.size)
+            dense = dense_blocks(observed, block)
+            self.blocks.append(Block(dense, rows.variance[block], own, inner, device))
+            first += block.size
         rows = Rows(rows.A[order], rows.y[order], rows.variance[order])
         self.order = torch.as_tensor(order, device=device)
         self.frames = rows.A.shape[1] // (N_JOINTS * 3)
@@ -122,12 +125,6 @@ class Projector:
         self.firm = math.sqrt(torch.finfo(inner).eps)
         combined = (rows.variance == 0) & ~is_coordinate(rows.A)
         self.refines = self.condition > WELL_CONDITIONED or bool(combined.any())
-        observed, first = observed_covariance(rows.A, covariance), 0
-        self.blocks = []
-        for index in groups:
-            own = slice(first, first + index.size)
-            self.blocks.append(Block(observed, rows.variance, own, len(index), inner, device))
-            first += index.size
 
     def project(self, x1_hat: torch.Tensor, variance: torch.Tensor | None = None) -> torch.Tensor:
         """Move a motion, or a batch, the shortest way onto the rows.
@@ -235,27 +232,24 @@ class Block:
     """Blocks of equal size, each coupling the rows of one frame and axis.
 
     Args:
-        observed: ``(m, m)``, the matrix A R⁻¹ Aᵀ.
-        variance: ``(m,)`` of the rows.
-        own: the rows of these blocks: the first row of every block, then the second of every one.
-        blocks: how many there are.
+        dense: ``(blocks, size, size)``, their parts of A R⁻¹ Aᵀ.
+        variance: ``(blocks, size)`` of their rows.
+        own: where their rows are: the first row of every block, then the second of every one.
         dtype: of the residuals that come later.
         device: where they live.
     """
 
     def __init__(
         self,
-        observed: sparse.csr_matrix,
+        dense: NDArray,
         variance: NDArray,
         own: slice,
-        blocks: int,
         dtype: torch.dtype,
         device: str | torch.device,
     ) -> None:
-        index = np.arange(own.start, own.stop).reshape(-1, blocks).T
-        dense = dense_blocks(observed, index)
-        inverse = np.linalg.inv(dense + variance[index][..., None] * np.eye(index.shape[1]))
-        self.own, self.shape = own, (index.shape[1], blocks)
+        blocks, size = variance.shape
+        inverse = np.linalg.inv(dense + variance[..., None] * np.eye(size))
+        self.own, self.shape = own, (size, blocks)
         rows_first = np.moveaxis(dense, 0, -1)
         self.dense = torch.tensor(rows_first, dtype=dtype, device=device)
         self.inverse = torch.as_tensor(inverse, dtype=dtype, device=device)
@@ -288,10 +282,11 @@ LARGEST_IN_LOCKSTEP = 12
 def eliminate(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -> torch.Tensor:
     r"""Solve :math:`(C + \operatorname{diag} \sigma^2)\, z = r` for many small C at once.
 
-    Row 0 is used to explain what it can of the others; what remains is the same problem with one
-    row less. So a projection of hundreds of blocks takes as many steps as one block has rows,
-    instead of a call of LAPACK for each. Being positive definite, C needs no pivoting. A row of
-    infinite variance explains nothing and gets z = 0, by the rules of arithmetic.
+    Gauss and Jordan, in lockstep: the first row explains what it can of all others and goes to the
+    end. After as many turns as a block has rows they are in their old order, and what is left is z.
+    So hundreds of blocks take as many steps as one block has rows, instead of a call of LAPACK for
+    each. Being positive definite, C needs no pivoting. A row of infinite variance explains nothing
+    and gets z = 0, by the rules of arithmetic.
 
     Args:
         C: ``(n, n, ...)`` positive semidefinite.
@@ -300,14 +295,12 @@ def eliminate(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -> torch
     """
     if len(C) > LARGEST_IN_LOCKSTEP:
         return solve_one_by_one(C, variance, r)
-    pivot = C[0, 0] + variance[0]
-    if len(C) == 1:
-        return r / pivot
-    share = C[1:, 0] / pivot
-    C_rest = torch.addcmul(C[1:, 1:], share[:, None], C[0, 1:], value=-1)
-    rest = eliminate(C_rest, variance[1:], torch.addcmul(r[1:], share, r[0], value=-1))
-    first = (r[0] - (C[0, 1:] * rest).sum(0)) / pivot
-    return torch.cat([first[None], rest])
+    system = torch.cat([C, r[:, None]], 1)
+    for own in variance:
+        first = system[0, 1:] / (system[0, 0] + own)
+        others = torch.addcmul(system[1:, 1:], system[1:, :1], first, value=-1)
+        system = torch.cat([others, first[None]])
+    return system[:, 0]
 
 
 def solve_one_by_one(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -> torch.Tensor:

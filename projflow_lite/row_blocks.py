@@ -78,11 +78,15 @@ class Independent(NamedTuple):
         keep: ``(kept,)`` their indices.
         condition: the largest condition number of a block of them.
         worst: the indices of the rows of that block; empty where no rows couple.
+        blocks: the rows that stay, in groups that can be solved alone, see `blocks_of_rows`.
+        observed: ``(m, m)``, :math:`A R^{-1} A^\\top` of all rows.
     """
 
     keep: NDArray[np.int64]
     condition: float
     worst: NDArray[np.int64]
+    blocks: list[NDArray]
+    observed: sparse.csr_matrix
 
 
 def independent_rows(rows: Rows, covariance: NDArray) -> Independent:
@@ -91,11 +95,12 @@ def independent_rows(rows: Rows, covariance: NDArray) -> Independent:
     Raises:
         ValueError: if a row contradicts the others, or hardly differs from what they say.
     """
-    S = (observed_covariance(rows.A, covariance) + sparse.diags(rows.variance)).tocsr()
+    observed, blocks = observed_covariance(rows.A, covariance), blocks_of_rows(rows.A)
     keep = np.ones(len(rows.y), dtype=bool)
     condition, worst = 1.0, np.zeros(0, dtype=np.int64)
-    for block in blocks_of_rows(rows.A):
-        dense = dense_blocks(S, block)
+    for block in blocks:
+        dense = dense_blocks(observed, block)
+        dense = dense + rows.variance[block][:, None] * np.eye(block.shape[1])
         scale = 1 / np.sqrt(np.diagonal(dense, axis1=1, axis2=2))
         eigenvalues = np.linalg.eigvalsh(dense * scale[:, :, None] * scale[:, None, :])
         # The correlations are the unit rows squared, and so are their singular values.
@@ -106,7 +111,10 @@ def independent_rows(rows: Rows, covariance: NDArray) -> Independent:
         k = np.argmax(conditions)
         if conditions[k] > condition:
             condition, worst = float(conditions[k]), block[k]
-    return Independent(np.flatnonzero(keep), condition, worst[keep[worst]])
+    if not keep.all():  # what is left may fall apart into smaller blocks
+        stay = np.flatnonzero(keep)
+        blocks = [stay[block] for block in blocks_of_rows(rows.A[stay])]
+    return Independent(np.flatnonzero(keep), condition, worst[keep[worst]], blocks, observed)
 
 
 def unit_rows(rows: Rows, covariance: NDArray, index: NDArray) -> tuple[NDArray, NDArray]:
