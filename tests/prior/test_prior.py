@@ -15,11 +15,12 @@ from data_synth import make_clips
 from data_synth.captions import phrases
 from projflow_lite.prior import training
 from projflow_lite.prior.checkpoint import read, write
+from projflow_lite.prior.loss import loss_of
 from projflow_lite.prior.loss_log import read_loss, stored_runs
 from projflow_lite.prior.network import bones_to_positions, draw, spline_kernel
 from projflow_lite.prior.signals import undivided
 from projflow_lite.prior.text import TextEncoder, Vocabulary
-from projflow_lite.prior.training import RECIPES, Trainer, begin, learning_rate, loss_of, train
+from projflow_lite.prior.training import RECIPES, Trainer, begin, learning_rate, train
 from projflow_lite.skeleton import EDGES, JOINTS
 
 SMOKE = replace(RECIPES["smoke"], steps=6, batch=4)
