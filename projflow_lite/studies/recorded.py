@@ -59,7 +59,7 @@ def arrays_of(path: str | Path) -> dict[str, NDArray]:
     try:
         with np.load(path, allow_pickle=False) as file:
             return {name: file[name] for name in ("x60", "skeleton60") if name in file.files}
-    except (AttributeError, EOFError, ValueError, zipfile.BadZipFile):
+    except (AttributeError, EOFError, TypeError, ValueError, zipfile.BadZipFile):
         raise ValueError(f"real-wishes: {path} cannot be read; {HOLDS}") from None
 
 
