@@ -3,8 +3,9 @@
 The study of control gives every method the same number of steps, and they differ in price: a
 gradient through the network costs a few calls, a search for noise hundreds. Here they get the same
 time: that of ProjFlow at its usual number of steps, twice and four times of it. How many steps fit
-(of DNO: looks) is found by timing in the same run, in turns with ProjFlow, so that a busy machine
-slows both; another machine may find other numbers, and only ratios are kept.
+(of DNO: looks) is found in the same run: two counts of each method are timed, in turns with
+ProjFlow, so that a busy machine slows both, and the line through them says what others take.
+Another machine may find other numbers, and only ratios are kept.
 
 Captions, keyframes and noise are those of the study of control; settings of methods as well.
 ``python -m projflow_lite.studies.equal_time --help`` has all options.
@@ -16,6 +17,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
+
+from tqdm.auto import tqdm
 
 from projflow_lite.prior import Prior
 from projflow_lite.studies import control
@@ -38,26 +41,26 @@ BUDGETS = (1, 2, 4)
 COUNTED = {"dno": "iterations"}
 """What a method takes more of when it has more time, if not steps."""
 
-TRIED = {"steps": (4, 12), "iterations": (1, 3)}
-"""Counts that are timed to tell what one more costs."""
+TURNS = 3
+"""How often each count is timed, in turns with ProjFlow; the best turn counts."""
 
 FULL = Protocol(
     joints=("pelvis", "left_wrist"), densities=(1, 5, FRAMES // 4), rivals=RIVALS, edit=False,
     clock=False,
 )  # fmt: skip
-QUICK = FULL._replace(clips=32, seeds=2, steps=10, joints=("left_wrist",), densities=(5,))
-"""A first look: wide intervals, one joint, one density."""
+QUICK = FULL._replace(clips=32, seeds=2, steps=5, joints=("left_wrist",), densities=(5,))
+"""A first look: wide intervals, one joint, one density, and very few steps."""
 
 
 class Fit(NamedTuple):
     """How much of a method fits into a time.
 
     Attributes:
-        count: of steps, or of iterations.
-        ratio: the time that they took, over ProjFlow's at its usual number of steps.
+        number: of steps, or of iterations.
+        ratio: the time that they take, over ProjFlow's at its usual number of steps.
     """
 
-    count: int
+    number: int
     ratio: float
 
 
@@ -72,53 +75,69 @@ def with_count(rival: Rival, count: int) -> Rival:
     return rival._replace(options=tuple(options.items()))
 
 
-def count_that_fits(few: int, many: int, cost: tuple[float, float], budget: float) -> int:
-    """The count that takes a time nearest to the budget, from what two counts took; at least 1.
+def tried(rival: Rival, steps: int) -> tuple[int, int]:
+    """Two counts whose times tell what one more costs."""
+    return (1, 2) if rival.method in COUNTED else (max(1, steps // 5), max(2, steps // 2))
 
-    Args:
-        few, many: two counts.
-        cost: what they took.
-        budget: in the unit of the cost.
+
+class Price(NamedTuple):
+    """What a method takes, in units of ProjFlow's time.
+
+    Attributes:
+        start: before anything is counted.
+        each: for one more.
     """
-    slope = (cost[1] - cost[0]) / (many - few)
-    if slope <= 0:  # a busy machine; the larger count is the safer measurement
-        return max(1, round(many * budget / cost[1]))
-    return max(1, round(few + (budget - cost[0]) / slope))
+
+    start: float
+    each: float
+
+    def fit(self, budget: float) -> Fit:
+        """The number that takes a time nearest to a budget; 1 at least."""
+        number = max(1, round((budget - self.start) / self.each))
+        return Fit(number, self.start + number * self.each)
 
 
-def fitted(make: Callable[[Rival], Any], rival: Rival, usual: Rival) -> dict[str, Any]:
-    """The fit of a method to every budget, and the time that it then takes.
+def price_of(few: int, many: int, cost: tuple[float, float]) -> Price:
+    """The line through what two counts took; through the origin if a busy machine says nonsense."""
+    each = (cost[1] - cost[0]) / (many - few)
+    start = cost[0] - few * each
+    return Price(start, each) if each > 0 and start >= 0 else Price(0.0, cost[1] / many)
+
+
+def priced(make: Callable[[Rival], Any], rival: Rival, usual: Rival, steps: int) -> dict[str, Any]:
+    """The price of a method.
 
     Args:
         make: what is timed.
         rival: the method.
-        usual: what it is timed against.
+        usual: what it is timed against, ProjFlow at its usual number of steps.
+        steps: that number.
     """
-
-    def ratio(count: int, turns: int) -> float:
-        work = partial(make, with_count(rival, count))
-        return time_ratio(work, partial(make, usual), turns)
-
-    few, many = TRIED[counted(rival)]
-    cost = ratio(few, 3), ratio(many, 3)
-    counts = {budget: count_that_fits(few, many, cost, budget) for budget in BUDGETS}
-    return {str(budget): Fit(count, ratio(count, 2)) for budget, count in counts.items()}
+    counts = tried(rival, steps)
+    first, second = (
+        time_ratio(partial(make, with_count(rival, count)), partial(make, usual), TURNS)
+        for count in counts
+    )
+    return price_of(*counts, (first, second))._asdict()
 
 
-def fits_of(bench: Bench, rivals: tuple[Rival, ...]) -> dict[Rival, dict[int, Fit]]:
+def fits_of(bench: Bench, rivals: tuple[Rival, ...], progress: bool) -> dict[Rival, dict[int, Fit]]:
     """How much of each method fits into each time, from the files or timed and stored.
 
     ProjFlow itself is what the others are timed against: its counts are known.
     """
     steps, found = bench.about["steps"], {}
     usual = with_count(USUAL, steps)
-    for rival in rivals:
+    bar = tqdm(rivals, disable=not progress, unit="method")
+    for rival in bar:
+        bar.set_description(f"how much fits: {rival.name}")
         if rival == USUAL:
             found[rival] = {budget: Fit(budget * steps, float(budget)) for budget in BUDGETS}
             continue
-        measure = partial(fitted, partial(in_time, bench), rival, usual)
-        known = stored(bench.place / rival.spelled / f"fits-{bench.device}.json", measure)
-        found[rival] = {budget: Fit(*known[str(budget)]) for budget in BUDGETS}
+        measure = partial(priced, partial(in_time, bench), rival, usual, steps)
+        path = bench.place / rival.spelled / f"price-{bench.device}.json"
+        price = Price(**stored(path, measure))
+        found[rival] = {budget: price.fit(budget) for budget in BUDGETS}
     return found
 
 
@@ -142,21 +161,23 @@ def run(
     Returns:
         Records as of `control.run`, without the means over joints at one density, and beside them
         ``budget``, ``count``, ``counted`` ("steps" or "iterations") and ``ratio``, the time that
-        was measured, as a multiple of ProjFlow's at its usual number of steps.
+        this takes, as a multiple of ProjFlow's at its usual number of steps.
 
     Raises:
         ValueError: as `control.run`.
     """
     p = protocol or FULL
     bench = begin("equal_time", prior, p, control.SEEDS, folder, device)
-    fits = fits_of(bench, p.rivals)
+    fits = fits_of(bench, p.rivals, progress)
     rows = [bench.data_row(partial(score_of_data, bench), COLUMNS)]
     for budget in BUDGETS:
-        rivals = tuple(with_count(rival, fits[rival][budget].count) for rival in p.rivals)
+        rivals = tuple(with_count(rival, fits[rival][budget].number) for rival in p.rivals)
         known = {rival.name: (counted(rival), fits[rival][budget]) for rival in p.rivals}
         for row in rows_of(bench, p._replace(rivals=rivals), progress):
             name, fit = known[row["method"]]
-            rows.append(row | {BUDGET: budget, COUNT: fit.count, "counted": name, RATIO: fit.ratio})
+            rows.append(
+                row | {BUDGET: budget, COUNT: fit.number, "counted": name, RATIO: fit.ratio}
+            )
     return rows
 
 

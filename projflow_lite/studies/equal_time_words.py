@@ -141,7 +141,7 @@ def table(rows: list[Row]) -> str:
     lines = [
         f"{data['seeds']} seeds of {data['clips']} clips for every joint ({', '.join(joints)}) and "
         f"density ({', '.join(keys)}); means over both ± 95 %. Behind a method: how much of it "
-        "fits, and the time that this took, as a multiple of that of ProjFlow at "
+        "fits, and the time that this takes, as a multiple of that of ProjFlow at "
         f"{data['steps']} steps. Errors and residual in metres.",
         "", f"{'':{WIDTH}s}" + "".join(f"{name:>20s}" for name in SHOWN),
         line_of(data, SHOWN, WIDTH),

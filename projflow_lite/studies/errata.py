@@ -3,8 +3,8 @@
 A formula that is wrong on paper may still be harmless in a sampler that takes many steps and then
 lands exactly on its keyframes. So each is run both ways, on the protocol of the study of control,
 with the same captions, keyframes and noise. Eq. 51 shares trust out among joints, and so can matter
-only where two of them are asked for at once; with one, both ways must give the same motions, and
-their differences of 0 show that the study finds nothing where there is nothing.
+only where two of them are asked for at once; with one, both ways must give the same motions but for
+rounding, and show that the study finds nothing where there is nothing.
 
 Every cell is stored as it is made; those of the usual sampler are shared with the study of control.
 ``python -m projflow_lite.studies.errata --help`` has all options.

@@ -43,14 +43,14 @@ def draw_score(axes: Any, rows: list[Row], column: str) -> None:
     from matplotlib.ticker import FuncFormatter
 
     pairs = list(pairs_of(rows, ALL))
-    joints = list(dict.fromkeys(joint for _, joint, *_ in pairs))
+    joints = list(dict.fromkeys(pair.joint for pair in pairs))
     for k, joint in enumerate(joints):
-        own = [(ERRATA.index(erratum), *pair) for erratum, other, *pair in pairs if other == joint]
-        effects = [effect_of(printed, derived, column) for _, printed, derived in own]
+        own = [pair for pair in pairs if pair.joint == joint]
+        effects = [effect_of(pair.printed, pair.derived, column) for pair in own]
         scale = [100 / max(abs(one.derived["mean"]), 1e-12) for one in effects]
         axes.errorbar(
             [one.mean * s for one, s in zip(effects, scale, strict=True)],
-            [place + 0.2 * (k - (len(joints) - 1) / 2) for place, *_ in own],
+            [ERRATA.index(pair.erratum) + 0.2 * (k - (len(joints) - 1) / 2) for pair in own],
             xerr=[one.half_width * s for one, s in zip(effects, scale, strict=True)],
             color=COLOURS[k], marker=MARKS[k], ms=5, elinewidth=1, ls="none", label=joint,
         )  # fmt: skip
@@ -61,7 +61,9 @@ def draw_score(axes: Any, rows: list[Row], column: str) -> None:
     ticks = [t for t in (-1000, -100, -10, 0, 10, 100, 1000) if min(low, -10) <= t <= max(high, 10)]
     axes.set_xticks(ticks)
     axes.set_xlim(min(low, -12), max(high, 12))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:+.0f}"))
+    axes.xaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: f"{value:+.0f}" if value else "0")
+    )
     axes.xaxis.minorticks_off()
     axes.set_yticks(range(len(ERRATA)), [erratum.name for erratum in ERRATA])
     axes.set_ylim(len(ERRATA) - 0.5, -0.5)

@@ -75,25 +75,34 @@ def place_of(rows: list[Row], joint: str, keys: int | str) -> dict[str, Row]:
     return {row["method"]: row for row in rows if (row["joint"], row["keys"]) == (joint, keys)}
 
 
-def pairs_of(rows: list[Row], keys: int | str) -> Iterator[tuple[Erratum, str, Row, Row]]:
+class Pair(NamedTuple):
+    """The rows of an erratum's two readings of one wish."""
+
+    erratum: Erratum
+    joint: str
+    printed: Row
+    derived: Row
+
+
+def pairs_of(rows: list[Row], keys: int | str) -> Iterator[Pair]:
     """Every erratum and wish that was measured both ways at one density."""
     joints = dict.fromkeys(row["joint"] for row in rows[1:] if row["joint"] != "average")
     for erratum in ERRATA:
         for joint in joints:
             found = place_of(rows, joint, keys)
             if all(rival.name in found for rival in erratum.rivals):
-                yield (erratum, joint, *(found[rival.name] for rival in erratum.rivals))
+                yield Pair(erratum, joint, *(found[rival.name] for rival in erratum.rivals))
 
 
 def of_erratum(rows: list[Row], erratum: Erratum) -> str | None:
     """Does one erratum matter, over all densities?"""
-    pairs = [(joint, *pair) for own, joint, *pair in pairs_of(rows, ALL) if own == erratum]
+    pairs = [pair for pair in pairs_of(rows, ALL) if pair.erratum == erratum]
     if not pairs:
         return None
     confidence = 1 - 0.05 / (len(pairs) * len(JUDGED))
     effects = [
-        (joint, effect_of(printed, derived, column, confidence))
-        for joint, printed, derived in pairs
+        (pair.joint, effect_of(pair.printed, pair.derived, column, confidence))
+        for pair in pairs
         for column in JUDGED
     ]
     certain = [f"{joint}, {one.spelled}" for joint, one in effects if one.word == MATTERS]
@@ -129,9 +138,9 @@ def of_density(rows: list[Row], keys: int | str) -> list[str]:
         parts = []
         for word in (MATTERS, NOT, OPEN):
             own = [one for one in effects if one.word == word]
-            names = "; ".join(one.spelled if word != NOT else one.column for one in own)
-            parts += [f"{word}: {names}"] if own else []
-        said.append(f"{erratum.name}, {joint}, {keys} keyframes. {'. '.join(parts)}.")
+            named = [one.column if word == NOT else one.spelled for one in own]
+            parts += [f"{word} in {', '.join(named)}"] if own else []
+        said.append(f"{erratum.name}, {joint}, {keys} frames given: {'; '.join(parts)}.")
     return said
 
 
@@ -158,11 +167,14 @@ def table(rows: list[Row]) -> str:
         "", f"{'':{WIDTH}s}{'':>10s}" + "".join(f"{name:>20s}" for name in SHOWN),
         line_of(data, SHOWN, WIDTH + 10),
     ]  # fmt: skip
-    for keys in [*densities(rows), ALL]:
-        usual = None
+    shown_keys: list[int | str] = [*densities(rows)]
+    if len(shown_keys) > 1:
+        shown_keys.append(ALL)
+    for keys in shown_keys:
+        last = None
         for erratum, joint, printed, derived in pairs_of(rows, keys):
-            if erratum.name != usual:
-                usual = erratum.name
+            if erratum != last:
+                last = erratum
                 lines += ["", f"{erratum.name}, keyframes: {keys}"]
             effects = [effect_of(printed, derived, column) for column in SHOWN]
             cells = (f"{one.mean:+.3g} ± {one.half_width:.2g}" for one in effects)

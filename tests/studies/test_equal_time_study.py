@@ -9,7 +9,15 @@ from untrained import small_prior
 from projflow_lite.studies import control, equal_time, equal_time_words
 from projflow_lite.studies.cells import ALL, DATA, published
 from projflow_lite.studies.control_ways import FREE, RIVALS
-from projflow_lite.studies.equal_time import Fit, count_that_fits, counted, fitted, with_count
+from projflow_lite.studies.equal_time import (
+    BUDGETS,
+    Price,
+    counted,
+    price_of,
+    priced,
+    tried,
+    with_count,
+)
 from projflow_lite.studies.equal_time_words import BUDGET, COUNT, RATIO
 from projflow_lite.studies.sensitivity_sweeps import USUAL
 
@@ -30,20 +38,22 @@ def test_what_a_method_has_more_of_is_steps_or_looks():
 
 
 @pytest.mark.parametrize(
-    ("cost", "budget", "count"),
+    ("cost", "budget", "number", "ratio"),
     [
-        ((0.5, 0.9), 1.0, 14),  # 0.3 to begin with and 0.05 a step
-        ((0.5, 0.9), 4.0, 74),
-        ((2.0, 6.0), 1.0, 2),
-        ((8.0, 24.0), 1.0, 1),  # half a step, but one it must be
-        ((0.5, 0.4), 1.0, 30),  # the clock was disturbed
+        ((0.5, 0.9), 1.0, 14, 1.0),  # 0.3 to begin with and 0.05 a step
+        ((0.5, 0.9), 4.0, 74, 4.0),
+        ((8.0, 24.0), 1.0, 1, 2.0),  # half a step, but one it must be
+        ((0.5, 0.4), 1.0, 30, 1.0),  # the clock was disturbed: a twelfth of 0.4 a step
+        ((0.1, 1.2), 1.0, 10, 1.0),  # and here: nothing takes less than no time to begin with
     ],
 )
-def test_the_count_that_fits_is_worked_out_by_hand(cost, budget, count):
-    assert count_that_fits(4, 12, cost, budget) == count
+def test_the_number_that_fits_is_worked_out_by_hand(cost, budget, number, ratio):
+    fit = price_of(4, 12, cost).fit(budget)
+    assert fit.number == number
+    assert fit.ratio == pytest.approx(ratio)
 
 
-def test_a_fit_is_found_by_the_clock_and_measured_again(monkeypatch):
+def test_a_price_is_found_by_the_clock(monkeypatch):
     """A method that takes 0.2 to begin with and 0.06 a step, in units of ProjFlow's time."""
     asked = []
 
@@ -54,42 +64,44 @@ def test_a_fit_is_found_by_the_clock_and_measured_again(monkeypatch):
         return 0.2 + 0.06 * done[0]["steps"]
 
     monkeypatch.setattr(equal_time, "time_ratio", clock)
-    found = fitted(lambda rival: None, DPS, with_count(USUAL, 25))
-    assert {budget: fit.count for budget, fit in found.items()} == {"1": 13, "2": 30, "4": 63}
-    assert asked == [4, 12, 13, 30, 63]
-    assert found["1"].ratio == pytest.approx(0.98)
+    price = Price(**priced(lambda rival: None, DPS, with_count(USUAL, 25), 25))
+    assert asked == [5, 12]
+    assert [price.fit(budget).number for budget in BUDGETS] == [13, 30, 63]
+    assert price.fit(1).ratio == pytest.approx(0.98)
+    assert tried(DNO, 25) == (1, 2)
+    assert tried(DPS, 2) == (1, 2)
 
 
 def test_what_was_fitted_is_taken_from_its_file_and_runs(prior, tmp_path, monkeypatch):
     timed, made, real = [], [], control.measured
 
-    def fake(make, rival, usual):
+    def fake(make, rival, usual, steps):
         timed.append(rival.name)
-        return {"1": Fit(1, 0.9), "2": Fit(2, 2.9), "4": Fit(4, 4.0)}
+        return {"start": 0.9, "each": 1.0}
 
     def looking(*what):
         made.append(what[2].name)
         return real(*what)
 
-    monkeypatch.setattr(equal_time, "fitted", fake)
+    monkeypatch.setattr(equal_time, "priced", fake)
     monkeypatch.setattr(control, "measured", looking)
     protocol = equal_time.QUICK._replace(steps=2, rivals=(FREE, USUAL, RIVALS[2]))
     rows = equal_time.run(prior, protocol, tmp_path / "runs", progress=False)
     assert timed == ["no wish", "ddnm"]
     assert equal_time.run(prior, protocol, tmp_path / "runs", progress=False) == rows
     assert timed == ["no wish", "ddnm"]
-    assert len(made) == 3 * 3 * 2  # methods, times and seeds, once
+    assert len(made) == 2 * (3 + 2 * 2)  # one step is the same in one and in two times
     counts = {(row["method"], row[BUDGET]): (row[COUNT], row[RATIO]) for row in rows[1:]}
     assert counts["projflow", 2] == (4, 2.0)
-    assert counts["ddnm", 2] == (2, 2.9)
-    assert {row["options"]["steps"] for row in rows[1:]} == {1, 2, 4, 8}
+    assert counts["ddnm", 2] == (1, 1.9)
+    assert {row["options"]["steps"] for row in rows[1:]} == {1, 2, 3, 4, 8}
     text = equal_time.table(rows)
-    for part in ("2 seeds of 32 clips", "twice the time", "ddnm, 2 steps, 2.90", "at 2 steps"):
+    for part in ("2 seeds of 32 clips", "twice the time", "ddnm, 1 steps, 1.90", "at 2 steps"):
         assert part in text
     said = equal_time.sentences(rows)
     assert said[0] == (
-        "More than a quarter over time: no wish in twice the time (takes 2.9 times ProjFlow's with "
-        "2 steps), ddnm in twice the time (takes 2.9 times ProjFlow's with 2 steps)."
+        "More than a quarter over time: no wish in the time (takes 1.9 times ProjFlow's with 1 "
+        "steps), ddnm in the time (takes 1.9 times ProjFlow's with 1 steps)."
     )
     published("equal-time", prior, rows, equal_time.figure, tmp_path)
     assert json.loads((tmp_path / "results/equal-time.json").read_text())["rows"] == rows
