@@ -16,6 +16,7 @@ are of keyframes, noise and draws, not of other people.
 from __future__ import annotations
 
 import hashlib
+import re
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -83,7 +84,7 @@ def run(
 
     Returns:
         Records as of `control.run`, and beside them ``source``: "held-out", "recorded", and
-        "recorded, own bones" for clips whose bones were not guessed. The first ones are what
+        "recorded (known bones)" for clips whose bones were not guessed. The first ones are what
         held-out and recorded clips themselves score.
 
     Raises:
@@ -102,7 +103,8 @@ def run(
     wishes = {HELD_OUT: lambda seed: unprompted(held_out(p.clips, FRAMES, SEEDS.wished + seed)[0])}
     wishes |= {name: partial(drawn, x, p.clips) for name, x in sets.items()}
     for name, wished in wishes.items():
-        own = bench._replace(place=bench.place / name.replace(", ", "-"), wished=wished)
+        folded = "-".join(re.findall(r"\w+", name))
+        own = bench._replace(place=bench.place / folded, wished=wished)
         measure = partial(measured, recorded)
         rows += [row | {SOURCE: name} for row in rows_of(own, p, progress, measure, COLUMNS)]
     return rows

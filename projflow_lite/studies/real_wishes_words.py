@@ -30,7 +30,7 @@ RANKED = ("FID", TO_RECORDED, "kinetic distance", "bone error %")
 """Less is better in all of them."""
 
 WORDS = {"reproduced": "lower", "not reproduced": "higher", "undecided": "undecided"}
-WIDTH = 24
+WIDTH = 32
 """Of the names of rows."""
 
 Row = dict[str, Any]
@@ -71,12 +71,12 @@ def of_exactness(rows: list[Row]) -> str | None:
             for name, row in averages(rows, source).items()
             if max(row["scores"]["residual"]["values"]) < EXACT
         ]
-        parts.append(f"on {source} wishes {', '.join(exact) or 'none'}")
+        parts.append(f"on {source} wishes by {', '.join(exact) or 'none'}")
     return f"Keyframes are met to rounding {'; '.join(parts)}."
 
 
 def of_method(rows: list[Row], name: str, source: str) -> str:
-    """What one method loses on recorded wishes."""
+    """What one method loses on recorded wishes; a sample without a wish knows of none."""
     first = averages(rows, next(iter(data_of(rows))))[name]
     other = averages(rows, source)[name]
     parts = []
@@ -124,7 +124,8 @@ def sentences(rows: list[Row]) -> list[str]:
     said.append(of_exactness(rows) or "")
     for source in others:
         said += [of_order(rows, column, source) or "" for column in RANKED]
-        said += [of_method(rows, name, source) for name in averages(rows, source)]
+        names = (name for name in averages(rows, source) if name != FREE.name)
+        said += [of_method(rows, name, source) for name in names]
     return [sentence for sentence in said if sentence]
 
 

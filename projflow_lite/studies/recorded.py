@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from projflow_lite.skeleton import N_JOINTS, joint_index
 from projflow_lite.studies.noise_reading import FRAMES
 
-RECORDED, OWN = "recorded", "recorded, own bones"
+RECORDED, OWN = "recorded", "recorded (known bones)"
 
 HOLDS = (
     f"it is an .npz file with an array x60 (clips, {FRAMES}, {N_JOINTS}, 3) of at least 32 clips: "

@@ -147,7 +147,8 @@ def test_exact_methods_are_exact_on_recorded_wishes_too(measured):
             assert max(found["scores"]["residual"]["values"]) < 1e-5
     said = real_wishes.sentences(measured)
     exact = next(line for line in said if line.startswith("Keyframes are met"))
-    assert f"on {RECORDED} wishes projflow, ddnm;" in exact
+    assert f"on {RECORDED} wishes by projflow, ddnm;" in exact
+    assert not any(line.startswith("no wish, ") for line in said)
 
 
 def test_the_table_the_picture_and_the_file_hold_the_numbers(measured, tmp_path):
