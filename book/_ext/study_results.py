@@ -66,9 +66,15 @@ def content(name: str, book: Path) -> list[nodes.Node]:
     said = study.sentences(known["rows"]) if hasattr(study, "sentences") else []
     found = [paragraph(text) for text in doubts(known)]
     if picture_of(book, name).exists():
-        found.append(nodes.image(uri=f"/pictures/{name}.png", alt=f"The study {name} as a picture"))
+        found.append(picture(name))
     found += listed(said)
     return found + tabled(study.table(known["rows"]), said)
+
+
+def picture(name: str) -> nodes.Node:
+    """The picture as wide as the page; because it has a width, Sphinx links it to its full size."""
+    about = f"The study {name} as a picture"
+    return nodes.image(uri=f"/pictures/{name}.png", alt=about, width="100%")
 
 
 def doubts(known: dict[str, Any]) -> list[str]:

@@ -104,6 +104,14 @@ def test_old_and_quick_records_are_said_to_be_so(book, change, said):
     assert [text for text in shown if text in doubts] == said
 
 
+def test_a_picture_is_shown_if_there_is_one(book):
+    (book / "pictures").mkdir()
+    (book / "pictures" / "errata.png").write_bytes(b"")
+    (shown,) = [n for n in study_results.content("errata", book) if isinstance(n, nodes.image)]
+    assert shown["uri"] == "/pictures/errata.png"
+    assert shown["width"]  # so that it leads to its full size
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_records_of_this_book_can_be_shown(name):
     found = study_results.content(name, BOOK)
