@@ -49,7 +49,7 @@ class Effect(NamedTuple):
     column: str
     mean: float
     half_width: float
-    derived: Row
+    derived: dict[str, Any]
     word: str
 
     @property
@@ -80,8 +80,8 @@ class Pair(NamedTuple):
 
     erratum: Erratum
     joint: str
-    printed: Row
-    derived: Row
+    printed: dict[str, Any]
+    derived: dict[str, Any]
 
 
 def pairs_of(rows: list[Row], keys: int | str) -> Iterator[Pair]:
