@@ -40,6 +40,7 @@ extensions = [
     "equation_links",
     "live_pages",
     "reference_pages",
+    "study_results",
 ]
 exclude_patterns = ["_build", "_ext", "results", "pictures", "**.ipynb_checkpoints"]
 default_role = "py:obj"  # a name in single backticks in a docstring

@@ -41,15 +41,21 @@ def build_parser() -> argparse.ArgumentParser:
     sample.add_argument("--json", type=Path, help="write length, time and residual to this file")
     sample.set_defaults(run=run_sample)
 
-    reproduce = commands.add_parser("reproduce", help="measure or draw again what the docs show")
+    reproduce = commands.add_parser(
+        "reproduce",
+        help="measure or draw again what the docs show",
+        formatter_class=argparse.RawTextHelpFormatter,  # any other breaks names at their hyphens
+    )
     reproduce.add_argument(
         "name",
-        help="contact-sheet, control, data-card, fewer-steps, gmd-table, lifting, noise-reading, "
-        "posterior or sensitivity",
+        help="contact-sheet, control, data-card, equal-time, errata,\nfewer-steps, gmd-table, "
+        "lifting, noise-reading, posterior,\nreal-wishes or sensitivity",
     )
     reproduce.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     reproduce.add_argument("--out", type=Path, default=Path("book"), help="folder (default: book)")
-    reproduce.add_argument("--real", type=Path, help="real clips (.npz) for the data card")
+    reproduce.add_argument(
+        "--real", type=Path, help="real clips (.npz), for data-card and real-wishes"
+    )
     reproduce.add_argument("--quick", action="store_true", help="a few minutes, wide intervals")
     reproduce.add_argument("--json", type=Path, help="write the numbers to this file")
     reproduce.set_defaults(run=run_reproduce)

@@ -124,7 +124,8 @@ def errata(papers: dict[str, list[Record]]) -> str:
         "What is wrong, or open to mistake, in print or in the public code. Each has a "
         "counterexample that runs: `projflow-lite derive` prints them, and the chapter "
         "[on print and derivation](../chapters/06_where_print_and_derivation_part.ipynb) shows the "
-        "larger ones.",
+        "larger ones. What four of them do to motions is measured among "
+        "[the tables](../tables.md).",
     ]
     for paper, listed in papers.items():
         rows = [

@@ -6,7 +6,6 @@ that are missing, and a run with more seeds takes those that are there.
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import itertools
 import json
@@ -21,7 +20,7 @@ from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
 from data_synth import Clips, held_out
-from projflow_lite.prior import Prior, load_prior
+from projflow_lite.prior import Prior
 from projflow_lite.scores import (
     frechet_distance,
     interval,
@@ -56,7 +55,7 @@ def fingerprint(what: torch.nn.Module | Features) -> str:
 
 
 def quality(
-    positions: NDArray, captions: list[str], reference: Features, seed: int
+    positions: NDArray, captions: list[str] | None, reference: Features, seed: int
 ) -> dict[str, float]:
     """Every score that needs no wish, over a whole set of clips; see `score_clips`."""
     own = features_of(positions)
@@ -231,44 +230,3 @@ def published(
     text = json.dumps({"prior": fingerprint(prior), "rows": rows}, indent=1)
     (out / f"results/{name}.json").write_text(text + "\n")
     draw(rows, out / f"pictures/{name}.png")
-
-
-def options_of(description: str, folder: Path, clips: int, seeds: int, steps: int) -> Any:
-    """A parser with the options that every comparison has."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
-    parser.add_argument("--quick", action="store_true", help="minutes; wide intervals")
-    parser.add_argument("--clips", type=int, default=clips, help=f"of a cell (default {clips})")
-    parser.add_argument("--seeds", type=int, default=seeds, help=f"default {seeds}")
-    parser.add_argument("--steps", type=int, default=steps, help=f"of sampling (default {steps})")
-    parser.add_argument("--device", default="cpu", help="of the network: cpu or cuda")
-    parser.add_argument("--folder", type=Path, default=folder, help="for results as they are made")
-    parser.add_argument("--out", type=Path, help="folder for results/ and pictures/")
-    return parser
-
-
-def chosen(rivals: Sequence[Rival], names: Sequence[str] | None) -> tuple[Rival, ...]:
-    """The methods of these names, or all of them."""
-    return tuple(rival for rival in rivals if names is None or rival.name in names)
-
-
-def carry_out(
-    name: str,
-    options: argparse.Namespace,
-    protocol: Any,
-    run: Callable[..., list[dict[str, Any]]],
-    table: Callable[[Any], str],
-    draw: Callable[[Any, Path], Any],
-) -> None:
-    """Run a comparison as asked for: print the table, and write records and picture if wanted."""
-    prior = load_prior(options.prior)
-    rows = run(prior, protocol, options.folder, options.device)
-    print(table(rows))
-    if options.out:
-        published(name, prior, rows, draw, options.out)
-
-
-def check_extent(who: str, clips: int, seeds: int) -> None:
-    """Refuse too few clips for a batch of R-precision, or too few seeds for an interval."""
-    if clips < 32 or seeds < 2:
-        raise ValueError(f"{who}: at least 32 clips and 2 seeds, not {clips} and {seeds}")

@@ -1,26 +1,32 @@
 """Every study behind one door: ``projflow-lite reproduce NAME``.
 
-A study prints its table and returns its numbers; pictures go to ``pictures/`` in the given folder.
+A study prints its table and returns its numbers. Pictures go to ``pictures/`` in the given folder,
+and records of comparisons to ``results/``, where the book finds them.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from projflow_lite.prior import load_prior
+from projflow_lite.prior import Prior, load_prior
 from projflow_lite.studies import (
     contact_sheet,
     control,
     data_card,
+    equal_time,
+    errata,
     fewer_steps,
     gmd_table,
     lifting,
     noise_reading,
     posterior,
+    real_wishes,
     sensitivity,
 )
+from projflow_lite.studies.cells import fingerprint
 
 
 class Wanted(NamedTuple):
@@ -59,43 +65,71 @@ def run_sensitivity(wanted: Wanted) -> dict[str, Any]:
     return compared("sensitivity", sensitivity, wanted)
 
 
-def compared(name: str, study: Any, wanted: Wanted) -> dict[str, Any]:
+def run_errata(wanted: Wanted) -> dict[str, Any]:
+    """Which errata of ProjFlow matter to its motions?"""
+    return compared("errata", errata, wanted)
+
+
+def run_equal_time(wanted: Wanted) -> dict[str, Any]:
+    """What does each method make of the time that ProjFlow takes?"""
+    return compared("equal-time", equal_time, wanted)
+
+
+def run_real_wishes(wanted: Wanted) -> dict[str, Any]:
+    """What becomes of every method on keyframes of recorded people?"""
+    return compared("real-wishes", real_wishes, wanted, wanted.real)
+
+
+def compared(name: str, study: Any, wanted: Wanted, *given: Any) -> dict[str, Any]:
     """Run a comparison of methods: its table, its picture and its records."""
-    rows = study.run(load_prior(wanted.prior), study.QUICK if wanted.quick else None)
-    return shown(name, study, rows, wanted)
+    prior = load_prior(wanted.prior)
+    rows = study.run(prior, *given, study.QUICK if wanted.quick else None)
+    return shown(name, study, rows, wanted, prior)
 
 
-def shown(name: str, study: Any, rows: Any, wanted: Wanted) -> dict[str, Any]:
-    """Print the table of a study and draw its picture."""
+def shown(
+    name: str, study: Any, rows: Any, wanted: Wanted, prior: Prior | None = None
+) -> dict[str, Any]:
+    """Print the table of a study, draw its picture, and keep its records if they are of a prior."""
     print(study.table(rows))
+    kept = {} if prior is None else {"results": str(records(name, rows, wanted, prior))}
+    if not hasattr(study, "figure"):
+        return kept | {"rows": rows}
     pictures = wanted.out / "pictures"
     pictures.mkdir(parents=True, exist_ok=True)
     picture = study.figure(rows, pictures / f"{name}.png")
-    return {"picture": str(picture), "rows": rows}
+    return kept | {"picture": str(picture), "rows": rows}
+
+
+def records(name: str, rows: Any, wanted: Wanted, prior: Prior) -> Path:
+    """Write the records of a study, the prior that they are of, and whether it was a quick look."""
+    path = wanted.out / "results" / f"{name}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    known = {"prior": fingerprint(prior), "quick": wanted.quick, "rows": rows}
+    path.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    return path
 
 
 def run_noise_reading(wanted: Wanted) -> dict[str, Any]:
     """Which noise should eq. 9 mix, and how much of it should be fresh?"""
     clips, seeds = (24, 2) if wanted.quick else (64, 3)
-    rows = noise_reading.run(load_prior(wanted.prior), clips, seeds)
-    print(noise_reading.table(rows))
-    return {"rows": rows}
+    prior = load_prior(wanted.prior)
+    return shown(
+        "noise-reading", noise_reading, noise_reading.run(prior, clips, seeds), wanted, prior
+    )
 
 
 def run_fewer_steps(wanted: Wanted) -> dict[str, Any]:
     """How few steps keep the quality of a hundred?"""
-    rows = fewer_steps.run(load_prior(wanted.prior), wanted.quick)
-    return shown("fewer-steps", fewer_steps, rows, wanted)
+    prior = load_prior(wanted.prior)
+    return shown("fewer-steps", fewer_steps, fewer_steps.run(prior, wanted.quick), wanted, prior)
 
 
 def run_gmd_table(wanted: Wanted) -> dict[str, Any]:
     """GMD beside ProjFlow: the same clips, the same keyframes, from one to all."""
-    rows = gmd_table.run(gmd_table.load_models(load_prior(wanted.prior)), wanted.quick)
-    print(gmd_table.table(rows))
-    pictures = wanted.out / "pictures"
-    pictures.mkdir(parents=True, exist_ok=True)
-    picture = gmd_table.figure(rows, pictures / "gmd-table.png")
-    return {"picture": str(picture), "rows": rows}
+    prior = load_prior(wanted.prior)
+    rows = gmd_table.run(gmd_table.load_models(prior), wanted.quick)
+    return shown("gmd-table", gmd_table, rows, wanted, prior)
 
 
 def run_data_card(wanted: Wanted) -> dict[str, Any]:
@@ -107,10 +141,13 @@ STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
     "contact-sheet": run_contact_sheet,
     "control": run_control,
     "data-card": run_data_card,
+    "equal-time": run_equal_time,
+    "errata": run_errata,
     "fewer-steps": run_fewer_steps,
     "gmd-table": run_gmd_table,
     "lifting": run_lifting,
     "noise-reading": run_noise_reading,
     "posterior": run_posterior,
+    "real-wishes": run_real_wishes,
     "sensitivity": run_sensitivity,
 }

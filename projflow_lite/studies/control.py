@@ -14,7 +14,8 @@ interrupted run goes on from where it was, and more seeds narrow the intervals o
 from __future__ import annotations
 
 import itertools
-from functools import cache, partial
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,25 +27,18 @@ from data_synth import Clips, held_out
 from projflow_lite.prior import Prior
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import control_errors
+from projflow_lite.studies.bench import Bench, Seeds, begin
 from projflow_lite.studies.cells import (
     ALL,
     Cell,
     Features,
     Group,
     Rival,
-    carry_out,
-    check_extent,
-    chosen,
-    data_row,
-    features_of,
+    Scores,
     filled,
-    fingerprint,
-    options_of,
     quality,
-    stored,
     summarised,
 )
-from projflow_lite.studies.claims import TIME
 from projflow_lite.studies.control_figure import figure
 from projflow_lite.studies.control_ways import (
     ABLATIONS,
@@ -53,12 +47,11 @@ from projflow_lite.studies.control_ways import (
     RIVALS,
     Made,
     Task,
-    elsewhere,
     make,
-    timed,
 )
 from projflow_lite.studies.control_words import COLUMNS, sentences, table
 from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chosen, options_of
 
 __all__ = ["figure", "run", "sentences", "table"]
 
@@ -66,7 +59,7 @@ FOLDER = Path("runs/control")
 JOINTS = ("pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist")
 DENSITIES = (1, 2, 5, FRAMES // 4, FRAMES)
 REFERENCE, WISHED, OTHERS = 4000, 5000, 6000
-"""Seeds of held-out clips: to compare with, to ask for, and to show what data itself scores."""
+SEEDS = Seeds(REFERENCE, WISHED, OTHERS)
 
 TIMED = Task("pelvis", 5, FRAMES), 16
 """What is timed: this task, on so many clips."""
@@ -127,37 +120,54 @@ def run(
         ValueError: for fewer than 32 clips, or fewer than 2 seeds.
     """
     p = protocol or Protocol()
-    check_extent("control", p.clips, p.seeds)
-    reference = features_of(held_out(16 * p.clips, FRAMES, REFERENCE).positions)
-    place = Path(folder) / f"{fingerprint(prior)}-{fingerprint(reference)}-{p.clips}-{p.steps}"
-    velocity, noise_std = elsewhere(prior, device), prior.noise_std
-    wished = cache(lambda seed: held_out(p.clips, FRAMES, WISHED + seed))
+    bench = begin("control", prior, p, SEEDS, folder, device)
+    rows = rows_of(bench, p, progress)
+    return [bench.data_row(partial(score_of_data, bench), COLUMNS), *rows]
 
-    def measure(cell: Cell, seed: int) -> dict[str, float]:
-        task = Task(cell.joint, int(cell.keys), FRAMES)
-        return measured(
-            velocity, noise_std, cell.rival, task, wished(seed), p.steps, seed, reference
-        )
 
-    timed_task, count = TIMED
-    few = held_out(count, FRAMES, WISHED)
+def rows_of(
+    bench: Bench,
+    p: Protocol,
+    progress: bool = True,
+    measure: Callable[[Bench, Cell, int], Scores] | None = None,
+    columns: Sequence[str] = COLUMNS,
+) -> list[dict[str, Any]]:
+    """The records of all methods, as of `run` but for the data's.
 
-    def in_time(rival: Rival) -> Made:
-        return make(velocity, noise_std, rival, timed_task, few, p.steps, 0)
+    Args:
+        bench: what all cells share.
+        p: how much is measured.
+        progress: whether to show a bar.
+        measure: of the bench, a cell and a seed; by default `measured`.
+        columns: that are kept.
+    """
+    times = bench.times(p.rivals if p.clock else (), partial(in_time, bench))
+    found = filled(
+        bench.place, cells_of(p), p.seeds, partial(measure or measured_cell, bench), progress
+    )
+    rows = summarised(found, groups_of(p), p.rivals, columns, bench.about)
+    return [row | times.get(row["method"], {}) for row in rows]
 
-    times = {}
-    for rival in p.rivals if p.clock else ():
-        clock = partial(timed, rival, in_time)
-        path = place / rival.spelled / f"time-{device}.json"
-        times[rival.name] = {TIME: stored(path, clock)[TIME]}
-    found = filled(place, cells_of(p), p.seeds, measure, progress)
-    about = {"clips": p.clips, "steps": p.steps}
-    rows = summarised(found, groups_of(p), p.rivals, COLUMNS, about)
-    data = data_row(
-        lambda clips, seed: score(clips.positions, clips, None, reference, seed),
-        p.clips, FRAMES, OTHERS, COLUMNS, about | {"seeds": p.seeds},
+
+def measured_cell(bench: Bench, cell: Cell, seed: int) -> Scores:
+    """One cell of the study of control."""
+    task = Task(cell.joint, int(cell.keys), FRAMES)
+    return measured(
+        bench.velocity, bench.noise_std, cell.rival, task, bench.wished(seed),
+        bench.about["steps"], seed, bench.reference,
     )  # fmt: skip
-    return [data, *(row | times.get(row["method"], {}) for row in rows)]
+
+
+def in_time(bench: Bench, rival: Rival) -> Made:
+    """The motions that are timed."""
+    task, count = TIMED
+    few = held_out(count, FRAMES, WISHED)
+    return make(bench.velocity, bench.noise_std, rival, task, few, bench.about["steps"], 0)
+
+
+def score_of_data(bench: Bench, clips: Clips, seed: int) -> Scores:
+    """What clips of the data score."""
+    return score(clips.positions, clips, None, bench.reference, seed)
 
 
 def cells_of(p: Protocol) -> list[Cell]:
@@ -199,27 +209,25 @@ def score(
 ) -> dict[str, float]:
     """The columns of the table, each over a whole set of clips; without a wish no errors."""
     row = quality(positions, clips.captions, reference, seed)
-    if made is not None:
-        errors = control_errors(positions, made.targets)
-        row |= {f"{name} error": float(e.mean()) for name, e in errors._asdict().items()}
-        row["residual"] = float(np.nanmax(np.abs(positions - made.targets)))
+    row |= {} if made is None else errors_of(made)
     return {name: row[name] for name in COLUMNS if name in row}
+
+
+def errors_of(made: Made) -> Scores:
+    """How far motions are from what was asked of them, metres and shares."""
+    errors = control_errors(made.positions, made.targets)
+    row = {f"{name} error": float(e.mean()) for name, e in errors._asdict().items()}
+    return row | {"residual": float(np.nanmax(np.abs(made.positions - made.targets)))}
 
 
 def main() -> None:
     """Measure, print the table, and write the records and the picture."""
     usual = Protocol()
-    parser = options_of(
-        "Every zero-shot method on one protocol.", FOLDER, usual.clips, usual.seeds, usual.steps
-    )
-    parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: all six")
-    parser.add_argument("--methods", nargs="+", help="names in the table (default: all)")
+    parser = options_of("Every zero-shot method on one protocol.", FOLDER, usual)
+    add_methods(parser, usual.rivals)
     options = parser.parse_args()
     rivals = chosen(usual.rivals, options.methods)
-    counts = (options.clips, options.seeds, options.steps)
-    protocol = (
-        QUICK if options.quick else Protocol(*counts, tuple(options.joints), DENSITIES, rivals)
-    )
+    protocol = asked_for(options, usual._replace(rivals=rivals), QUICK)
     carry_out("control", options, protocol, run, table, figure)
 
 

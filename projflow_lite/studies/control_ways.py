@@ -21,6 +21,7 @@ from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.skeleton import LOWER_BODY, joint_indices
 from projflow_lite.studies.cells import Rival, Scores
 from projflow_lite.studies.claims import TIME
+from projflow_lite.studies.readings import READINGS
 
 BATCH = 64
 """Clips that are made at once. They share the frames of their keyframes, not the targets."""
@@ -57,12 +58,15 @@ QUICK_DNO = Rival("dno", "dno", (("iterations", 10), ("solver_steps", 5)))
 EDIT = "upper-body edit"
 """Pelvis and legs stay where they are in every frame, and the prompt moves the rest."""
 
+AND = " and "
+"""Between the names of joints that are asked for at once."""
+
 
 class Task(NamedTuple):
     """What is asked for: one joint, or the lower body, at some keyframes.
 
     Attributes:
-        joint: its name, or `EDIT`.
+        joint: its name, the names of several with `AND` between them, or `EDIT`.
         keys: number of keyframes.
         frames: of the motions.
     """
@@ -74,7 +78,8 @@ class Task(NamedTuple):
     @property
     def joints(self) -> list[int]:
         """Indices of the joints that are asked for."""
-        return joint_indices(LOWER_BODY if self.joint == EDIT else [self.joint], "control")
+        names = LOWER_BODY if self.joint == EDIT else self.joint.split(AND)
+        return joint_indices(names, "control")
 
     def keyframes(self, seed: int) -> NDArray[np.int64]:
         """Frames of the keyframes, drawn without repetition, rising."""
@@ -157,7 +162,7 @@ def sampled(
 
 OF_GUIDES = tuple(field.name for field in fields(GuideSettings))
 OF_METRIC = ("w_kin", "ridge")
-OF_AIM = ("metric", "guides", *OF_GUIDES, *OF_METRIC)
+OF_AIM = ("metric", "guides", "reading", *OF_GUIDES, *OF_METRIC)
 """Options of ProjFlow that are not the sampler's: they say what it asks for in every step."""
 
 
@@ -173,7 +178,9 @@ def aim(rival: Rival, task: Task, frames: NDArray, targets: NDArray) -> Any:
     wanted = targets.reshape(len(targets), len(frames), len(task.joints), 3)
     one = pin(task.joints, frames, wanted[0])
     metric, guides = metric_of(rival), guides_of(rival)
-    asked = METHODS[rival.method].aim(one, task.frames, metric, torch.float32, guides)
+    reading = dict(rival.options).get("reading")
+    asking = READINGS[reading] if reading else METHODS[rival.method].aim
+    asked = asking(one, task.frames, metric, torch.float32, guides)
     y = targets.reshape(len(targets), -1)
     if not isinstance(asked, Imputation):
         return asked.aimed_at(y)

@@ -16,7 +16,7 @@ A full run takes many hours on a laptop, so every cell is stored as it is made.
 
 from __future__ import annotations
 
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -26,26 +26,18 @@ from numpy.typing import NDArray
 from data_synth import Clips, held_out
 from projflow_lite.prior import Prior
 from projflow_lite.samplers.projflow import Velocity
+from projflow_lite.studies.bench import Bench, Seeds, begin
 from projflow_lite.studies.cells import (
     ALL,
     Cell,
     Features,
     Group,
     Rival,
-    carry_out,
-    check_extent,
-    chosen,
-    data_row,
-    features_of,
+    Scores,
     filled,
-    fingerprint,
-    options_of,
     quality,
-    stored,
     summarised,
 )
-from projflow_lite.studies.claims import TIME
-from projflow_lite.studies.control_ways import elsewhere, timed
 from projflow_lite.studies.lifting_figure import figure
 from projflow_lite.studies.lifting_pictures import CROSS, JOINTS, Errors
 from projflow_lite.studies.lifting_ways import (
@@ -59,12 +51,12 @@ from projflow_lite.studies.lifting_ways import (
 )
 from projflow_lite.studies.lifting_words import COLUMNS, sentences, table
 from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chosen, options_of
 
 __all__ = ["figure", "run", "sentences", "table"]
 
 FOLDER = Path("runs/lifting")
-REFERENCE, WISHED, OTHERS = 9000, 10_000, 11_000
-"""Seeds of held-out clips: to compare with, to draw, and to show what data itself scores."""
+SEEDS = Seeds(reference=9000, wished=10_000, others=11_000)
 
 TIMED = "left_wrist", 16
 """What is timed: this task, on so many clips."""
@@ -125,36 +117,31 @@ def run(
         ValueError: for fewer than 32 clips, or fewer than 2 seeds.
     """
     p = protocol or Protocol()
-    check_extent("lifting", p.clips, p.seeds)
-    reference = features_of(held_out(16 * p.clips, FRAMES, REFERENCE).positions)
-    extent = f"{p.clips}-{p.steps}-{p.effort.spelled}"
-    place = Path(folder) / f"{fingerprint(prior)}-{fingerprint(reference)}-{extent}"
+    bench = begin("lifting", prior, p, SEEDS, folder, device, f"-{p.effort.spelled}")
     learnt = school(FRAMES, p.effort, Path(folder))
-    velocity, noise_std = elsewhere(prior, device), prior.noise_std
-    wished = cache(lambda seed: held_out(p.clips, FRAMES, WISHED + seed))
 
-    def measure(cell: Cell, seed: int) -> dict[str, float]:
-        return measured(velocity, noise_std, cell, wished(seed), p.steps, seed, learnt, reference)
+    def measure(cell: Cell, seed: int) -> Scores:
+        return measured(
+            bench.velocity, bench.noise_std, cell, bench.wished(seed), p.steps, seed, learnt,
+            bench.reference,
+        )  # fmt: skip
 
-    timed_task, count = TIMED
-    few = held_out(count, FRAMES, WISHED)
-
-    def in_time(rival: Rival) -> Made:
-        return make(velocity, noise_std, rival, timed_task, few, p.steps, 0, learnt)
-
-    times = {}
-    for rival in p.rivals:
-        clock = partial(timed, rival, in_time)
-        times[rival.name] = stored(place / rival.spelled / f"time-{device}.json", clock)[TIME]
+    times = bench.times(p.rivals, partial(in_time, bench, learnt))
     cells = [Cell(task, ALL, rival) for task in (*p.joints, CROSS) for rival in p.rivals]
-    found = filled(place, cells, p.seeds, measure, progress)
-    about = {"clips": p.clips, "steps": p.steps}
-    rows = summarised(found, groups_of(p), p.rivals, COLUMNS, about)
-    data = data_row(
-        lambda clips, seed: score(clips.positions, clips, None, reference, seed),
-        p.clips, FRAMES, OTHERS, COLUMNS, about | {"seeds": p.seeds},
-    )  # fmt: skip
-    return [data, *(row | {TIME: times[row["method"]]} for row in rows)]
+    found = filled(bench.place, cells, p.seeds, measure, progress)
+    rows = summarised(found, groups_of(p), p.rivals, COLUMNS, bench.about)
+    data = bench.data_row(
+        lambda clips, seed: score(clips.positions, clips, None, bench.reference, seed), COLUMNS
+    )
+    return [data, *(row | times[row["method"]] for row in rows)]
+
+
+def in_time(bench: Bench, learnt: Learnt, rival: Rival) -> Made:
+    """The motions that are timed."""
+    task, count = TIMED
+    few = held_out(count, FRAMES, SEEDS.wished)
+    steps = bench.about["steps"]
+    return make(bench.velocity, bench.noise_std, rival, task, few, steps, 0, learnt)
 
 
 def groups_of(p: Protocol) -> list[Group]:
@@ -200,15 +187,11 @@ def score(
 def main() -> None:
     """Measure, print the table, and write the records and the picture."""
     usual = Protocol()
-    parser = options_of(
-        "From a drawing to a motion.", FOLDER, usual.clips, usual.seeds, usual.steps
-    )
-    parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: all six")
-    parser.add_argument("--methods", nargs="+", help="names in the table (default: all)")
+    parser = options_of("From a drawing to a motion.", FOLDER, usual)
+    add_methods(parser, usual.rivals)
     options = parser.parse_args()
     rivals = chosen(usual.rivals, options.methods)
-    counts = (options.clips, options.seeds, options.steps)
-    protocol = QUICK if options.quick else Protocol(*counts, tuple(options.joints), rivals)
+    protocol = asked_for(options, usual._replace(rivals=rivals), QUICK)
     carry_out("lifting", options, protocol, run, table, figure)
 
 

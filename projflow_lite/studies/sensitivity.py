@@ -20,13 +20,13 @@ from typing import Any
 
 from projflow_lite.prior import Prior
 from projflow_lite.studies import control
-from projflow_lite.studies.cells import carry_out, options_of
 from projflow_lite.studies.control import Protocol
 from projflow_lite.studies.control_ways import FREE
 from projflow_lite.studies.noise_reading import FRAMES
 from projflow_lite.studies.sensitivity_figure import figure
 from projflow_lite.studies.sensitivity_sweeps import SWEEPS, USUAL, Sweep
 from projflow_lite.studies.sensitivity_words import sentences, table
+from projflow_lite.studies.shell import asked_for, carry_out, options_of
 
 __all__ = ["figure", "run", "sentences", "table"]
 
@@ -98,16 +98,11 @@ def chosen(names: list[str] | None) -> tuple[Sweep, ...]:
 
 def main() -> None:
     """Measure, print the table, and write the records and the picture."""
-    parser = options_of("How much does each constant matter?", control.FOLDER, 128, 4, 25)
-    parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: pelvis, left_wrist")
+    usual = protocol_of(SWEEPS)
+    parser = options_of("How much does each constant matter?", control.FOLDER, usual)
     parser.add_argument("--constants", nargs="+", help="names in the table (default: all)")
     options = parser.parse_args()
-    counts = (options.clips, options.seeds, options.steps)
-    protocol = (
-        QUICK
-        if options.quick
-        else protocol_of(chosen(options.constants), *counts, tuple(options.joints))
-    )
+    protocol = asked_for(options, protocol_of(chosen(options.constants)), QUICK)
     carry_out("sensitivity", options, protocol, run, table, figure)
 
 
