@@ -12,7 +12,6 @@ from collections.abc import Callable
 
 import torch
 
-from projflow_lite.prior.network import Network
 from projflow_lite.skeleton import JOINTS, N_JOINTS, PARENTS
 
 FEET = 8.0
@@ -56,7 +55,7 @@ def size_of(error: torch.Tensor, feet: float = 1.0) -> torch.Tensor:
 
 
 def loss_of(
-    network: Network,
+    network: Callable[..., torch.Tensor],
     u1: torch.Tensor,
     ids: torch.Tensor,
     random: torch.Generator,

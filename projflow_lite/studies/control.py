@@ -1,10 +1,11 @@
-"""Every zero-shot method on one prior and one protocol: ProjFlow's Tables 1, 3, 6 and 7.
+"""Every method of control on one prior and one protocol: ProjFlow's Tables 1, 3, 6 and 7.
 
 Captions of held-out clips, and where one joint of those clips is in 1, 2, 5, a quarter and all of
 their frames. How near does a method come, what does the motion look like afterwards, and what does
 it cost? And, as in the last rows of those tables, the lower body is given in every frame, and the
 prompt moves the rest. The paper compares methods on different priors with different metric code;
-here they share everything but themselves.
+here they share everything but themselves. Two rivals were trained for control, and bring networks
+of their own that began with the same prior (`control_models`).
 
 A full run takes many hours on a laptop, so every cell of the table is stored as it is made: an
 interrupted run goes on from where it was, and more seeds narrow the intervals of a finished one.
@@ -46,14 +47,15 @@ from projflow_lite.studies.cells import (
 )
 from projflow_lite.studies.claims import TIME
 from projflow_lite.studies.control_figure import figure
+from projflow_lite.studies.control_models import Models, field_of, said_of
 from projflow_lite.studies.control_ways import (
     ABLATIONS,
     EDIT,
     QUICK_DNO,
     RIVALS,
+    TRAINED,
     Made,
     Task,
-    elsewhere,
     make,
     timed,
 )
@@ -90,12 +92,13 @@ class Protocol(NamedTuple):
     steps: int = 25
     joints: tuple[str, ...] = JOINTS
     densities: tuple[int, ...] = DENSITIES
-    rivals: tuple[Rival, ...] = RIVALS + ABLATIONS
+    rivals: tuple[Rival, ...] = RIVALS + TRAINED + ABLATIONS
     edit: bool = True
     clock: bool = True
 
 
-QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), (*RIVALS[:-1], QUICK_DNO, *ABLATIONS))
+QUICK_RIVALS = (*RIVALS[:-1], QUICK_DNO, *TRAINED, *ABLATIONS)
+QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), QUICK_RIVALS)
 """A first look: its intervals are wide, and DNO gets a tenth of its looks."""
 
 
@@ -105,6 +108,7 @@ def run(
     folder: str | Path = FOLDER,
     device: str = "cpu",
     progress: bool = True,
+    models: Models | None = None,
 ) -> list[dict[str, Any]]:
     """Measure every method; see the module's docstring.
 
@@ -116,25 +120,31 @@ def run(
             change of a sampler, take another folder.
         device: where the network is computed, "cpu" or "cuda".
         progress: whether to show a bar.
+        models: of trained rivals, by name; None for those in the package. A rival is left out if
+            its model is not there or was made from another prior.
 
     Returns:
         One record a row, held-out data first: ``joint``, ``keys``, ``method``, ``options`` and
         ``scores``, each with its ``mean``, its ``half width`` (95 %) and the ``values`` of all
         seeds. Then for every joint the mean over densities (``keys`` is "all"), and that over
-        joints (``joint`` is "average"); and last the upper-body edit.
+        joints (``joint`` is "average"); and last the upper-body edit. The first has also a sentence
+        on who was ``left out``, or None.
 
     Raises:
         ValueError: for fewer than 32 clips, or fewer than 2 seeds.
     """
     p = protocol or Protocol()
     check_extent("control", p.clips, p.seeds)
+    field = field_of(prior, p.rivals, device, models)
+    p = p._replace(rivals=field.rivals)
     reference = features_of(held_out(16 * p.clips, FRAMES, REFERENCE).positions)
     place = Path(folder) / f"{fingerprint(prior)}-{fingerprint(reference)}-{p.clips}-{p.steps}"
-    velocity, noise_std = elsewhere(prior, device), prior.noise_std
+    noise_std = prior.noise_std
     wished = cache(lambda seed: held_out(p.clips, FRAMES, WISHED + seed))
 
     def measure(cell: Cell, seed: int) -> dict[str, float]:
         task = Task(cell.joint, int(cell.keys), FRAMES)
+        velocity = field.velocity(cell.rival)
         return measured(
             velocity, noise_std, cell.rival, task, wished(seed), p.steps, seed, reference
         )
@@ -143,7 +153,7 @@ def run(
     few = held_out(count, FRAMES, WISHED)
 
     def in_time(rival: Rival) -> Made:
-        return make(velocity, noise_std, rival, timed_task, few, p.steps, 0)
+        return make(field.velocity(rival), noise_std, rival, timed_task, few, p.steps, 0)
 
     times = {}
     for rival in p.rivals if p.clock else ():
@@ -157,6 +167,7 @@ def run(
         lambda clips, seed: score(clips.positions, clips, None, reference, seed),
         p.clips, FRAMES, OTHERS, COLUMNS, about | {"seeds": p.seeds},
     )  # fmt: skip
+    data["left out"] = said_of(field.absent)
     return [data, *(row | times.get(row["method"], {}) for row in rows)]
 
 
@@ -210,7 +221,7 @@ def main() -> None:
     """Measure, print the table, and write the records and the picture."""
     usual = Protocol()
     parser = options_of(
-        "Every zero-shot method on one protocol.", FOLDER, usual.clips, usual.seeds, usual.steps
+        "Every method of control on one protocol.", FOLDER, usual.clips, usual.seeds, usual.steps
     )
     parser.add_argument("--joints", nargs="+", default=JOINTS, help="default: all six")
     parser.add_argument("--methods", nargs="+", help="names in the table (default: all)")
