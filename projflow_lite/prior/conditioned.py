@@ -1,17 +1,18 @@
 r"""Two priors that were taught to see keyframes: the trained rivals of zero-shot control.
 
 What is known of a motion is one tensor, `observed`: metres, and NaN where nothing is known. The
-network gets it as 132 numbers a frame, 66 values (0 where unknown) and 66 marks that say which of
-them are known; `marked` makes them. A layer that begins at zero, the *hint*, adds them to what the
-network makes of the noisy motion. There are two ways to go on from the prior.
+network gets 132 numbers a frame, 66 values (0 where unknown) and 66 marks that say which of them
+are known; `marked` makes them. One layer, the *hint*, adds them to what the network makes of the
+noisy motion at its door. There are two ways to go on from the prior.
 
-* `MaskedPrior`, as in CondMDI: the network itself gets the hint, and all of its weights are trained
-  further. To add a layer of the new numbers to the first layer's output is to give that layer more
-  inputs. CondMDI also puts known values in place of noisy ones; we leave the noisy ones where they
-  are, because then training begins with the prior's own answers.
-* `ControlledPrior`, a ControlNet: the prior's weights stay as they are. A *branch* copies the
-  inward half of its U-Net and gets the hint; what the copy sees is added to what the prior sees,
-  through two more layers that begin at zero. Only the branch is trained.
+* `MaskedPrior`, as CondMDI: all weights are trained further. Known coordinates of the state lose
+  their noise, and a hint of the values themselves is added. It begins at zero: that is as if the
+  first layer had got 132 more inputs with weights of zero.
+* `ControlledPrior`, a ControlNet: the prior's weights stay as they are. A *branch*, a copy of the
+  inward half of its U-Net, gets the hint and is trained; what it sees is added to what the prior
+  sees, through two layers that begin at zero. Its values are how far the prior's own prediction is
+  from what is known: what to do about a distance is learned in minutes, what to do about a place
+  is not. For that the prior is asked first, so a step costs the way in and the way out twice.
 
 Both learn :math:`E[x_1 \mid x_t, \text{text}, \text{observed}]`, in which known coordinates are as
 observed, exactly. A trained network comes near to that, no more; ProjFlow's projection needs no
@@ -35,17 +36,20 @@ from projflow_lite.prior.checkpoint import fingerprint
 from projflow_lite.prior.model import Prior, Text
 from projflow_lite.prior.network import CHANNELS, Inward, Network
 
+LOUD = 8.0
+"""By which values and marks are multiplied: a few coordinates have to be heard among thousands."""
 
-def marked(observed: torch.Tensor) -> torch.Tensor:
+
+def marked(values: torch.Tensor) -> torch.Tensor:
     """Known values and marks as channels over time: ``(batch, 132, frames)``.
 
     Args:
-        observed: ``(batch, frames, 22, 3)``, NaN where nothing is known.
+        values: ``(batch, frames, 22, 3)``, NaN where nothing is known.
     """
-    known = ~observed.isnan()
-    both = torch.cat([observed.nan_to_num(0.0).flatten(2), known.flatten(2).to(observed)], dim=-1)
+    known = ~values.isnan()
+    both = LOUD * torch.cat([values.nan_to_num(0.0), known.to(values)], dim=2).flatten(2)
     # Frames that are there only because two halvings need them know nothing.
-    return functional.pad(both.mT, (0, -observed.shape[1] % 4))
+    return functional.pad(both.mT, (0, -values.shape[1] % 4))
 
 
 def zeroed(layer: nn.Conv1d) -> nn.Conv1d:
@@ -56,8 +60,8 @@ def zeroed(layer: nn.Conv1d) -> nn.Conv1d:
 
 
 def hint_layer(width: int) -> nn.Conv1d:
-    """From 132 channels to the features at half frame rate that the first layer makes of motion."""
-    return zeroed(nn.Conv1d(2 * CHANNELS, width, 4, 2, 1, bias=False))
+    """From 132 channels to features at half frame rate; it says nothing where nothing is known."""
+    return nn.Conv1d(2 * CHANNELS, width, 4, 2, 1, bias=False)
 
 
 class MaskedNetwork(Network):
@@ -65,7 +69,7 @@ class MaskedNetwork(Network):
 
     def __init__(self, words: int, *sizes: Any, **named: Any) -> None:
         super().__init__(words, *sizes, **named)
-        self.hint = hint_layer(self.enter.out_channels)
+        self.hint = zeroed(hint_layer(self.enter.out_channels))
 
     def forward(
         self,
@@ -87,7 +91,7 @@ class MaskedNetwork(Network):
         if observed is not None:
             with torch.autocast(x.device.type, enabled=False):
                 hint = self.hint(marked(observed))
-            x = torch.where(observed.isnan(), x, t.view(-1, 1, 1, 1) * observed)
+            x = torch.where(observed.isnan(), x, t.view(-1, 1, 1, 1) * observed)  # without noise
         seen = self.look(x)
         half, quarter = self.inward(seen, condition, hint)
         return self.outward(half, quarter, seen, condition, t, x.shape[1])
@@ -105,16 +109,22 @@ class Branch(Inward):
         for name in Inward.__annotations__:
             setattr(self, name, deepcopy(getattr(network, name)))
         a, b = self.enter.out_channels, self.to_quarter.out_channels
-        self.hint = nn.Conv1d(2 * CHANNELS, a, 4, 2, 1, bias=False)
+        self.hint = hint_layer(a)
+        nn.init.normal_(self.hint.weight, std=0.1)
         self.join_half = zeroed(nn.Conv1d(a, a, 1))
         self.join_quarter = zeroed(nn.Conv1d(b, b, 1))
 
     def forward(
-        self, seen: torch.Tensor, condition: torch.Tensor, observed: torch.Tensor | None
+        self, seen: torch.Tensor, condition: torch.Tensor, miss: torch.Tensor | None
     ) -> tuple[torch.Tensor, torch.Tensor]:
-        """What to add to the network's own features at half and at quarter frame rate."""
+        """What to add to the network's own features at half and at quarter frame rate.
+
+        Args:
+            seen, condition: see `Inward.inward`.
+            miss: ``(batch, frames, 22, 3)``, NaN where nothing is known; None knows nothing.
+        """
         with torch.autocast(seen.device.type, enabled=False):
-            hint = None if observed is None else self.hint(marked(observed))
+            hint = None if miss is None else self.hint(marked(miss))
         half, quarter = self.inward(seen, condition, hint)
         return self.join_half(half), self.join_quarter(quarter)
 
@@ -136,11 +146,12 @@ class ControlledNetwork(Network):
         """Predict the clean motion; arguments as of `MaskedNetwork.forward`."""
         seen, condition = self.look(x), self.told(t, ids)
         half, quarter = self.inward(seen, condition)
-        plain = self.outward(half, quarter, seen, condition, t, x.shape[1])
-        if observed is None:
-            observed = torch.full_like(x, torch.nan)
-        usual = (1 - t).view(-1, 1, 1, 1) + 0.05
-        more_half, more_quarter = self.branch(seen, condition, (observed - plain) / usual)
+        miss = None
+        if observed is not None:
+            plain = self.outward(half, quarter, seen, condition, t, x.shape[1])
+            # Over about what predictions miss at this time, so that the branch sees one scale.
+            miss = (observed - plain) / (1.05 - t).view(-1, 1, 1, 1)
+        more_half, more_quarter = self.branch(seen, condition, miss)
         half, quarter = half + more_half, quarter + more_quarter
         return self.outward(half, quarter, seen, condition, t, x.shape[1])
 
@@ -160,7 +171,7 @@ class ConditionedPrior(Prior):
 
     @classmethod
     def of(cls, prior: Prior) -> Self:
-        """A model that begins with a prior's weights, and gives the prior's answers."""
+        """A model that begins with a prior's weights; told nothing, it gives the same answers."""
         new = cls(
             prior.vocabulary,
             prior.mean,
@@ -216,7 +227,7 @@ class ConditionedPrior(Prior):
     def scaled(self, observed: torch.Tensor, x_t: torch.Tensor) -> torch.Tensor:
         """What is known as the network wants it: centred, scaled, one for each motion."""
         each = observed if observed.ndim == 4 else observed[None]
-        if each.shape[1:] != x_t.shape[1:] or len(x_t) % max(1, len(each)):
+        if each.shape[1:] != x_t.shape[1:] or not len(each) or len(x_t) % len(each):
             raise ValueError(
                 f"prior: what is known of motions of shape {tuple(x_t.shape)} has the shape "
                 f"{tuple(x_t.shape[1:])}, or one for each motion, not {tuple(observed.shape)}"
@@ -241,7 +252,7 @@ class ControlledPrior(ConditionedPrior):
 
     @classmethod
     def of(cls, prior: Prior) -> Self:
-        """A prior with a branch that copies it and says nothing yet."""
+        """A prior with a branch that copies it and says nothing yet, whatever it is told."""
         new = super().of(prior)
         new.network.branch = Branch(new.network)
         return new

@@ -11,7 +11,7 @@ from data_synth import make_clips
 from data_synth.captions import phrases
 from projflow_lite.prior import Prior, load_prior, save_prior
 from projflow_lite.prior.checkpoint import read, write
-from projflow_lite.prior.conditioned import ControlledPrior, MaskedPrior, marked
+from projflow_lite.prior.conditioned import LOUD, ControlledPrior, MaskedPrior, marked
 from projflow_lite.prior.conditioned_files import (
     load_control_branch,
     load_masked_prior,
@@ -65,15 +65,46 @@ def scrambled(model, seed=1):
     return model
 
 
+PLACES = ((0.0, None), (0.4, "a person walks"), (0.97, ["a person jumps", None]))
+
+
 @pytest.mark.parametrize("kind", KINDS, ids=NAMES)
-def test_before_training_it_is_the_plain_prior_whatever_it_is_shown(kind):
+def test_before_training_it_is_the_plain_prior(kind):
     prior, x = fresh_prior(), states()
     model = kind.of(prior)
-    for t, text in ((0.0, None), (0.4, "a person walks"), (0.97, ["a person jumps", None])):
-        plain = prior(x, t, text)
-        assert torch.equal(model(x, t, text), plain)
-        assert torch.equal(model(x, t, text, keyframes(x)), plain)
-        assert torch.equal(model.endpoint(x, t, text, keyframes(x)), prior.endpoint(x, t, text))
+    for t, text in PLACES:
+        assert torch.equal(model(x, t, text), prior(x, t, text))
+        assert torch.equal(model.endpoint(x, t, text), prior.endpoint(x, t, text))
+
+
+def test_a_branch_says_nothing_before_training_whatever_it_is_shown():
+    prior, x = fresh_prior(), states()
+    model = ControlledPrior.of(prior)
+    for t, text in PLACES:
+        assert torch.equal(model(x, t, text, keyframes(x)), prior(x, t, text))
+
+
+def test_an_untrained_masked_prior_sees_known_coordinates_without_their_noise():
+    """The plain prior on a state in which they are t y, and all else as it was."""
+    prior, x = fresh_prior(), states()
+    observed, t = keyframes(states(seed=3)), 0.4
+    state = torch.where(observed.isnan(), x, t * observed)
+    ours = MaskedPrior.of(prior).endpoint(x, t, "a person walks", observed)
+    torch.testing.assert_close(ours, prior.endpoint(state, t, "a person walks"))
+    assert (ours - prior.endpoint(x, t, "a person walks")).abs().max() > 1e-3
+
+
+def test_a_branch_is_told_how_far_the_prior_is_from_what_is_known():
+    """Spied on; the miss of the frozen prior's endpoint, over 1.05 - t and the scale."""
+    prior, x = fresh_prior(), states()
+    model, told = scrambled(ControlledPrior.of(prior)), []
+    model.network.branch.forward = lambda seen, condition, miss: (told.append(miss), (0.0, 0.0))[1]
+    observed, t = keyframes(states(seed=3)), 0.6
+    model.endpoint(x, t, "a person walks", observed)
+    miss = observed - prior.endpoint(x, t, "a person walks")
+    torch.testing.assert_close(
+        told[0], miss / prior.noise_std / (1.05 - t), equal_nan=True, atol=1e-4, rtol=1e-4
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=NAMES)
@@ -109,15 +140,15 @@ def test_what_is_known_is_of_one_motion_of_each_or_repeated_in_turn(kind):
     assert model(x.double(), 0.4, None, observed.double()).dtype == torch.float64
 
 
-def test_a_branch_sees_what_its_prior_sees_and_keyframes_in_scaled_metres():
+def test_keyframes_are_seen_in_scaled_metres_with_marks_and_loud():
     """Worked out here: the mean goes out, the scale is the noise's, unknown is 0 and unmarked."""
     model, x = MaskedPrior.of(fresh_prior()), states()
     seen = marked(model.scaled(keyframes(x), x))
     assert seen.shape == (2, 132, 36)
     value = (x[0, 17, 20] - model.mean[20]) / model.noise_std
-    torch.testing.assert_close(seen[0, 60:63, 17], value)
+    torch.testing.assert_close(seen[0, 60:63, 17], LOUD * value)
     marks = torch.zeros(66, 36)
-    marks[60:63, [3, 17]] = 1
+    marks[60:63, [3, 17]] = LOUD
     assert torch.equal(seen[1, 66:], marks)
     assert not seen[0, :66][marks == 0].any()
 
@@ -163,7 +194,7 @@ def start(tmp_path_factory):
 
 
 def recipe(start, branch, **changes):
-    fields = {"batch": 24, "lengths": (20,), "learning_rate": 4e-3, "steps": 400}
+    fields = {"batch": 24, "lengths": (20,), "learning_rate": 4e-3, "steps": 250}
     return ConditionedRecipe(branch=branch, start=str(start), **(fields | changes))
 
 
