@@ -296,14 +296,12 @@ def test_costs_are_those_of_one_run_with_projflow_as_the_unit():
     times = {"no wish": 1.0, "dps": 3.0, "projflow": 1.2, "dno": 30.0, "control branch": 1.8}
     rows = [row(name, (1.0, 1.0), joint="average") | {TIME: t} for name, t in times.items()]
     assert control_words.of_costs(rows) == (
-        "Time, projflow : dps : dno : control branch = 1.00 : 2.50 : 25.00 : 1.50, all with the "
-        "same steps; in the paper's Figure 6 projflow is faster than a control branch: reproduced."
+        "Time, projflow : dps : dno : control branch = 1.00 : 2.50 : 25.00 : 1.50; with as many "
+        "steps projflow is faster than a control branch in Figure 6: reproduced."
     )
     rows[2] = rows[2] | {TIME: 2.0}
-    assert control_words.of_costs(rows).endswith("than a control branch: not reproduced.")
-    assert control_words.of_costs(rows[:4]).endswith(
-        "= 1.00 : 1.50 : 15.00, all with the same steps."
-    )
+    assert control_words.of_costs(rows).endswith("control branch in Figure 6: not reproduced.")
+    assert control_words.of_costs(rows[:4]).endswith("= 1.00 : 1.50 : 15.00.")
     assert control_words.of_costs(rows[:2]) is None
 
 
