@@ -21,7 +21,7 @@ def build_parser() -> argparse.ArgumentParser:
         "--recipe",
         default="classroom",
         help="classroom, shipped or smoke; for GMD emphasis_10, emphasis_1, emphasis_classroom or "
-        "trajectory",
+        "trajectory; priors that see keyframes: control_branch or masked",
     )
     train.add_argument("--out", type=Path, help="folder of the run (default: runs/RECIPE)")
     train.add_argument("--steps", type=int, help="optimiser steps, instead of the recipe's")

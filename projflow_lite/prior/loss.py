@@ -12,7 +12,6 @@ from collections.abc import Callable
 
 import torch
 
-from projflow_lite.prior.network import Network
 from projflow_lite.skeleton import ANKLES, FEET, N_JOINTS, PARENTS
 
 FOOT_WEIGHT = 8.0
@@ -54,7 +53,7 @@ def size_of(error: torch.Tensor, feet: float = 1.0) -> torch.Tensor:
 
 
 def loss_of(
-    network: Network,
+    network: Callable[..., torch.Tensor],
     u1: torch.Tensor,
     ids: torch.Tensor,
     random: torch.Generator,

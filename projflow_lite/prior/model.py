@@ -73,12 +73,18 @@ class Prior(nn.Module):
         Raises:
             ValueError: for a shape or a length that the prior does not know.
         """
+        return self.asked(x_t, t, text)
+
+    def asked(
+        self, x_t: torch.Tensor, t: float | torch.Tensor, text: Text, *more: torch.Tensor
+    ) -> torch.Tensor:
+        """What the network says of a state in metres, in metres; `more` is for the network."""
         self.check(x_t)
         t = torch.as_tensor(t, dtype=x_t.dtype, device=x_t.device).expand(len(x_t))
         ids = self.vocabulary.encode(as_prompts(text, len(x_t))).to(x_t.device)
         # Noise has mean 0 and data has mean `mean`, so x_t has mean t * mean: take it out.
         centred = (x_t - t.view(-1, 1, 1, 1) * self.mean) / self.noise_std
-        out = self.network(centred.to(self.mean.dtype), t.to(self.mean.dtype), ids)
+        out = self.network(centred.to(self.mean.dtype), t.to(self.mean.dtype), ids, *more)
         return (self.mean + self.noise_std * out).to(x_t.dtype)
 
     def forward(

@@ -94,7 +94,34 @@ class Attention(nn.Module):
         return x + self.out(mixed).mT
 
 
-class Network(nn.Module):
+class Inward(nn.Module):
+    """The way in: from what is seen of a motion to features at half and quarter frame rate."""
+
+    enter: nn.Conv1d
+    half_in: nn.ModuleList
+    to_quarter: nn.Conv1d
+    quarter: nn.ModuleList
+    attention: Attention
+
+    def inward(
+        self, seen: torch.Tensor, condition: torch.Tensor, hint: torch.Tensor | None = None
+    ) -> tuple[torch.Tensor, torch.Tensor]:
+        """Features at half and at quarter frame rate.
+
+        Args:
+            seen: ``(batch, channels + 2, frames)`` from `Network.look`.
+            condition: ``(batch, condition)`` from `Network.told`.
+            hint: added at the door, ``(batch, width, frames / 2)``.
+        """
+        # A body may be ten metres away and move by millimetres: half precision is for the middle.
+        with torch.autocast(seen.device.type, enabled=False):
+            h = self.enter(seen) if hint is None else self.enter(seen) + hint
+        half = through(self.half_in, h, condition)
+        h = self.quarter[0](self.to_quarter(half), condition)
+        return half, self.quarter[1](self.attention(h), condition)
+
+
+class Network(Inward):
     r"""Predicts the clean endpoint :math:`\hat x_1` of the flow from :math:`(x_t, t, \text{text})`.
 
     Args:
@@ -154,18 +181,32 @@ class Network(nn.Module):
             t: ``(batch,)`` flow time in 0..1.
             ids: ``(batch, words)`` word numbers, see `Vocabulary.encode`.
         """
-        frames = x.shape[1]
-        condition = functional.silu(self.time(time_features(t, 64)) + self.text(ids))
+        seen, condition = self.look(x), self.told(t, ids)
+        half, quarter = self.inward(seen, condition)
+        return self.outward(half, quarter, seen, condition, t, x.shape[1])
+
+    def look(self, x: torch.Tensor) -> torch.Tensor:
+        """Motions as channels, with a clock, and with as many frames as two halvings need."""
         seen = torch.cat([self.see(x), clock(x)], dim=1)
-        seen = functional.pad(seen, (0, -frames % 4), mode="replicate")
-        # A body may be ten metres away and move by millimetres: half precision is for the middle.
-        with torch.autocast(x.device.type, enabled=False):
-            h = self.enter(seen)
-        half = through(self.half_in, h, condition)
-        h = self.quarter[0](self.to_quarter(half), condition)
-        h = self.quarter[1](self.attention(h), condition)
-        h = through(self.half_out, torch.cat([half, twice(self.from_quarter(h))], 1), condition)
-        with torch.autocast(x.device.type, enabled=False):
+        return functional.pad(seen, (0, -x.shape[1] % 4), mode="replicate")
+
+    def told(self, t: torch.Tensor, ids: torch.Tensor) -> torch.Tensor:
+        """Flow time and prompt as one vector, ``(batch, condition)``."""
+        return functional.silu(self.time(time_features(t, 64)) + self.text(ids))
+
+    def outward(
+        self,
+        half: torch.Tensor,
+        quarter: torch.Tensor,
+        seen: torch.Tensor,
+        condition: torch.Tensor,
+        t: torch.Tensor,
+        frames: int,
+    ) -> torch.Tensor:
+        """The way out: from the features of `inward` to the clean motion."""
+        both = torch.cat([half, twice(self.from_quarter(quarter))], 1)
+        h = through(self.half_out, both, condition)
+        with torch.autocast(half.device.type, enabled=False):
             loud = self.gate(condition.float()).unsqueeze(-1)
             copies = self.smooth(seen[:, : self.channels]) * loud
             points = self.leave(h.float()) + copies.unflatten(1, (self.channels, COPIES)).sum(2)

@@ -1,6 +1,7 @@
 r"""Teach the models of GMD: a prior on emphasised motion, and a planner of trajectories.
 
-Both are runs of the prior's own trainer: ``projflow-lite train --recipe emphasis_10``.
+Both are runs of the prior's own trainer: ``projflow-lite train --recipe emphasis_10``. All recipes
+of the package come together here, those of `conditioned_training` too.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from typing import Any
 
 import torch
 
-from projflow_lite.prior import training
+from projflow_lite.prior import conditioned_training, training
 from projflow_lite.prior.checkpoint import load_prior
 from projflow_lite.prior.emphasis import EmphasisedPrior, load_emphasised, save_emphasised
 from projflow_lite.prior.features import EMPHASISED, mixing_matrix, spreads_of
@@ -152,5 +153,6 @@ RECIPES: dict[str, Recipe] = training.RECIPES | {
     "emphasis_1": EmphasisRecipe(1500, learning_rate=5e-4, bfloat16=True, start="shipped", c=1.0),
     "emphasis_classroom": EmphasisRecipe(3000, widths=(96, 144), bfloat16=True),
     "trajectory": TrajectoryRecipe(4000, widths=(40, 64), learning_rate=2e-3),
+    **conditioned_training.RECIPES,
 }
-"""The prior's own recipes, and those of GMD."""
+"""The prior's own recipes, those of GMD, and those of the trained rivals of zero-shot control."""

@@ -16,6 +16,8 @@ from projflow_lite.motion import Motion
 from projflow_lite.prior.model import as_prompts
 from projflow_lite.samplers.adapter import Adapter
 from projflow_lite.samplers.aims import any_rows, exact_pins, exact_rows, pins_to_impute
+from projflow_lite.samplers.condmdi import condmdi
+from projflow_lite.samplers.control_branch import control_branch
 from projflow_lite.samplers.ddnm import ddnm
 from projflow_lite.samplers.diffusion import ancestral
 from projflow_lite.samplers.dno import dno
@@ -52,6 +54,8 @@ __all__ = [
     "ancestral",
     "box",
     "circles",
+    "condmdi",
+    "control_branch",
     "ddnm",
     "dno",
     "dps",
@@ -82,11 +86,13 @@ class Method(NamedTuple):
             guides)``.
         takes_goals: whether the loop takes `goal`, with or without a wish, and `space`, for priors
             that are not on motions in metres.
+        model: what loads a prior that was trained for it; empty if it takes any prior.
     """
 
     sampler: Callable[..., torch.Tensor]
     aim: Callable[..., Any]
     takes_goals: bool
+    model: str = ""
 
 
 METHODS = {
@@ -101,6 +107,15 @@ METHODS = {
     "flowchef": Method(flowchef, partial(any_rows, "flowchef"), takes_goals=False),
     "dps": Method(dps, partial(any_rows, "dps"), takes_goals=False),
     "dno": Method(dno, partial(any_rows, "dno"), takes_goals=False),
+    "control_branch": Method(
+        control_branch,
+        partial(exact_pins, "control_branch"),
+        takes_goals=False,
+        model="load_control_branch",
+    ),
+    "condmdi": Method(
+        condmdi, partial(exact_pins, "condmdi"), takes_goals=False, model="load_masked_prior"
+    ),
 }
 """Methods that obey a wish, by the name that `sample` takes."""
 
@@ -138,7 +153,8 @@ def sample(
         method: a name of `METHODS`: "projflow"; or "gmd" and "gmd_keyframes", which overwrite
             exact pins, and push; or a rival: "ddnm", exact for any hard wish; "replacement" and
             "imputation", for exact pins; "flowdps", "pnp_flow", "flowchef", "dps" and "dno", which
-            come near to any wish.
+            come near to any wish; or "control_branch" and "condmdi", which come near to exact pins
+            with a prior that was trained for that, see `projflow_lite.prior.conditioned_files`.
         goal: what else to reach, as a function of motions, see `goals`; with or without a wish.
             For the methods of GMD.
         batch: how many motions; None for one, without a batch dimension.
@@ -160,12 +176,13 @@ def sample(
             f"sample: without a wish there is no {', '.join(options)}; leave it out, or add a wish"
         )
     check_choices(prior, wish, method, dtype, guides)
+    check_model(prior, method)
     as_prompts(prompt, batch or 1)
     check_method(prior, wish, goal, method)
     if hasattr(prior, "check_frames"):
         prior.check_frames(frames)
     times = flow_times(steps)
-    sampler, make_aim, takes_goals = METHODS[method]
+    sampler, make_aim, takes_goals, _ = METHODS[method]
     space: Any = prior if hasattr(prior, "unproject") else Metres()
     aim: Any = None
     if wish is not None or takes_goals:
@@ -240,6 +257,16 @@ def check_method(prior: Velocity, wish: Wish | None, goal: Goal | None, method: 
         raise ValueError(
             f"sample: {method} needs a prior on motions in metres, and this one is on projected "
             f"motion; take {able}"
+        )
+
+
+def check_model(prior: Velocity, method: str) -> None:
+    """Refuse a prior that was not trained for a method that needs one."""
+    wanted = METHODS[method].model
+    if wanted and getattr(prior, "trained_for", "") != method:
+        raise ValueError(
+            f"sample: {method} needs a prior that was trained to see keyframes; take {wanted}() "
+            "from projflow_lite.prior.conditioned_files, or another method"
         )
 
 

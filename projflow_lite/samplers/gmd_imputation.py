@@ -41,6 +41,11 @@ class Imputation:
         moved = x1_hat + self.of_pelvis(self.values - x1_hat) if self.along else x1_hat
         return torch.where(self.mask, self.values, moved)
 
+    @property
+    def observed(self) -> torch.Tensor:
+        """What is known as one tensor of the shape of `values`, NaN where nothing is."""
+        return torch.where(self.mask, self.values, torch.nan)
+
     def protect(self, push: torch.Tensor) -> torch.Tensor:
         """Set a push to 0 wherever something is imputed."""
         free = push - self.of_pelvis(push) if self.along else push

@@ -19,6 +19,7 @@ def guided(velocity: Velocity, scale: float) -> Velocity:
 
     Args:
         velocity: any ``velocity(x_t, t, text)`` that takes a list of prompts, None among them.
+            What else a sampler tells it, it is told as well.
         scale: 0 ignores the prompt, 1 follows it, more exaggerates it.
 
     Raises:
@@ -29,11 +30,13 @@ def guided(velocity: Velocity, scale: float) -> Velocity:
     if scale == 1.0:
         return velocity
 
-    def field(x_t: torch.Tensor, t: float, text: Text = None) -> torch.Tensor:
+    def field(
+        x_t: torch.Tensor, t: float, text: Text = None, *observed: torch.Tensor
+    ) -> torch.Tensor:
         prompts = as_prompts(text, len(x_t))
         if all(prompt is None for prompt in prompts):
-            return velocity(x_t, t, None)
-        both = velocity(torch.cat([x_t, x_t]), t, [*prompts, *[None] * len(x_t)])
+            return velocity(x_t, t, None, *observed)
+        both = velocity(torch.cat([x_t, x_t]), t, [*prompts, *[None] * len(x_t)], *observed)
         with_text, without = both.chunk(2)
         return without + scale * (with_text - without)
 
@@ -43,8 +46,10 @@ def guided(velocity: Velocity, scale: float) -> Velocity:
 def checked(velocity: Velocity) -> Velocity:
     """The same field; a shape that torch would stretch to that of the state is an error."""
 
-    def field(x_t: torch.Tensor, t: float, text: Text = None) -> torch.Tensor:
-        v = velocity(x_t, t, text)
+    def field(
+        x_t: torch.Tensor, t: float, text: Text = None, *observed: torch.Tensor
+    ) -> torch.Tensor:
+        v = velocity(x_t, t, text, *observed)
         if not isinstance(v, torch.Tensor) or v.shape != x_t.shape:
             raise ValueError(
                 f"sample: the prior returned {shown(v)} for a state of shape {tuple(x_t.shape)}"

@@ -16,7 +16,8 @@ from projflow_lite.samplers.options import check_callback
 from projflow_lite.samplers.step import ProjectionStep
 from projflow_lite.skeleton import shown
 
-Velocity = Callable[[torch.Tensor, float, Text], torch.Tensor]
+Velocity = Callable[..., torch.Tensor]
+"""A flow: ``velocity(x_t, t, text)``; one that sees keyframes takes them as a fourth argument."""
 
 
 class Step(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -45,7 +45,8 @@ class Bench(NamedTuple):
 
     Attributes:
         place: folder of one prior, data and size.
-        velocity: the prior's, on the device that was asked for.
+        flows: the prior's, under "", and that of each model that a rival brings, on the device
+            that was asked for.
         noise_std: standard deviation of its noise, metres.
         reference: features of the clips to compare with.
         wished: of a seed, the clips whose prompts and positions are asked for.
@@ -56,7 +57,7 @@ class Bench(NamedTuple):
     """
 
     place: Path
-    velocity: Velocity
+    flows: Mapping[str, Velocity]
     noise_std: float | torch.Tensor
     reference: Features
     wished: Callable[[int], Clips]
@@ -64,6 +65,11 @@ class Bench(NamedTuple):
     repeats: int
     others: int
     device: str
+
+    @property
+    def velocity(self) -> Velocity:
+        """The prior's flow."""
+        return self.flows[""]
 
     def times(
         self, rivals: Sequence[Rival], make: Callable[[Rival], Any]
@@ -113,7 +119,7 @@ def begin(
     name = f"{fingerprint(prior)}-{fingerprint(reference)}-{clips}-{steps}{extent}"
     wished = cache(lambda seed: held_out(clips, FRAMES, seeds.wished + seed))
     return Bench(
-        Path(folder) / name, elsewhere(prior, device), prior.noise_std, reference, wished,
+        Path(folder) / name, {"": elsewhere(prior, device)}, prior.noise_std, reference, wished,
         {"clips": clips, "steps": steps}, protocol.seeds, seeds.others, device,
     )  # fmt: skip
 

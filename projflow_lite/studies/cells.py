@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
 from data_synth import Clips, held_out
-from projflow_lite.prior import Prior
+from projflow_lite.prior import Prior, checkpoint
 from projflow_lite.scores import (
     frechet_distance,
     interval,
@@ -47,10 +47,9 @@ def features_of(positions: NDArray) -> Features:
 
 def fingerprint(what: torch.nn.Module | Features) -> str:
     """Tells one network's weights, or the features of one evaluator and data set, from others."""
-    if isinstance(what, Features):
-        parts = [np.round(part, 3).astype(np.float32) for part in what]
-    else:
-        parts = [tensor.cpu().numpy() for tensor in what.state_dict().values()]
+    if not isinstance(what, Features):
+        return checkpoint.fingerprint(what)
+    parts = [np.round(part, 3).astype(np.float32) for part in what]
     return hashlib.sha256(b"".join(part.tobytes() for part in parts)).hexdigest()[:8]
 
 
@@ -91,16 +90,19 @@ class Rival(NamedTuple):
             sample without a wish.
         options: what differs from the method's defaults; of ProjFlow also "metric", "guides", the
             constants of either, and "steps", see `control_ways.aim`.
+        model: what it brings instead of the prior that all others share; empty for that prior.
     """
 
     name: str
     method: str
     options: tuple[tuple[str, Any], ...] = ()
+    model: str = ""
 
     @property
     def spelled(self) -> str:
-        """Name and settings, for a file's name."""
+        """Name, settings and model, for a file's name."""
         parts = [self.name, *(f"{key}={value}" for key, value in self.options)]
+        parts += [self.model] if self.model else []
         return "_".join(parts).replace(", ", "-").replace(" ", "-")
 
 

@@ -51,7 +51,7 @@ def run_contact_sheet(wanted: Wanted) -> dict[str, Any]:
 
 
 def run_control(wanted: Wanted) -> dict[str, Any]:
-    """Which zero-shot method obeys, at which cost? Table 1 and 7 of ProjFlow."""
+    """Which method obeys, trained or not, and at which cost? Table 1 and 7 of ProjFlow."""
     return compared("control", control, wanted)
 
 

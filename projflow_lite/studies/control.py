@@ -1,10 +1,11 @@
-"""Every zero-shot method on one prior and one protocol: ProjFlow's Tables 1, 3, 6 and 7.
+"""Every method of control on one prior and one protocol: ProjFlow's Tables 1, 3, 6 and 7.
 
 Captions of held-out clips, and where one joint of those clips is in 1, 2, 5, a quarter and all of
 their frames. How near does a method come, what does the motion look like afterwards, and what does
 it cost? And, as in the last rows of those tables, the lower body is given in every frame, and the
 prompt moves the rest. The paper compares methods on different priors with different metric code;
-here they share everything but themselves.
+here they share everything but themselves. Two rivals were trained for control, and bring networks
+of their own that began with the same prior (`control_models`).
 
 A full run takes many hours on a laptop, so every cell of the table is stored as it is made: an
 interrupted run goes on from where it was, and more seeds narrow the intervals of a finished one.
@@ -40,11 +41,13 @@ from projflow_lite.studies.cells import (
     summarised,
 )
 from projflow_lite.studies.control_figure import figure
+from projflow_lite.studies.control_models import Models, field_of, said_of
 from projflow_lite.studies.control_ways import (
     ABLATIONS,
     EDIT,
     QUICK_DNO,
     RIVALS,
+    TRAINED,
     Made,
     Task,
     make,
@@ -83,12 +86,13 @@ class Protocol(NamedTuple):
     steps: int = 25
     joints: tuple[str, ...] = JOINTS
     densities: tuple[int, ...] = DENSITIES
-    rivals: tuple[Rival, ...] = RIVALS + ABLATIONS
+    rivals: tuple[Rival, ...] = RIVALS + TRAINED + ABLATIONS
     edit: bool = True
     clock: bool = True
 
 
-QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), (*RIVALS[:-1], QUICK_DNO, *ABLATIONS))
+QUICK_RIVALS = (*RIVALS[:-1], QUICK_DNO, *TRAINED, *ABLATIONS)
+QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), QUICK_RIVALS)
 """A first look: its intervals are wide, and DNO gets a tenth of its looks."""
 
 
@@ -98,6 +102,7 @@ def run(
     folder: str | Path = FOLDER,
     device: str = "cpu",
     progress: bool = True,
+    models: Models | None = None,
 ) -> list[dict[str, Any]]:
     """Measure every method; see the module's docstring.
 
@@ -109,20 +114,25 @@ def run(
             change of a sampler, take another folder.
         device: where the network is computed, "cpu" or "cuda".
         progress: whether to show a bar.
+        models: of trained rivals, by name; None for those in the package. A rival is left out if
+            its model is not there or was made from another prior.
 
     Returns:
         One record a row, held-out data first: ``joint``, ``keys``, ``method``, ``options`` and
         ``scores``, each with its ``mean``, its ``half width`` (95 %) and the ``values`` of all
         seeds. Then for every joint the mean over densities (``keys`` is "all"), and that over
-        joints (``joint`` is "average"); and last the upper-body edit.
+        joints (``joint`` is "average"); and last the upper-body edit. The first has also a sentence
+        on who was ``left out``, or None.
 
     Raises:
         ValueError: for fewer than 32 clips, or fewer than 2 seeds.
     """
     p = protocol or Protocol()
-    bench = begin("control", prior, p, SEEDS, folder, device)
-    rows = rows_of(bench, p, progress)
-    return [bench.data_row(partial(score_of_data, bench), COLUMNS), *rows]
+    field = field_of(prior, p.rivals, device, models)
+    bench = begin("control", prior, p, SEEDS, folder, device)._replace(flows=field.velocities)
+    rows = rows_of(bench, p._replace(rivals=field.rivals), progress)
+    data = bench.data_row(partial(score_of_data, bench), COLUMNS)
+    return [data | {"left out": said_of(field.absent)}, *rows]
 
 
 def rows_of(
@@ -153,7 +163,7 @@ def measured_cell(bench: Bench, cell: Cell, seed: int) -> Scores:
     """One cell of the study of control."""
     task = Task(cell.joint, int(cell.keys), FRAMES)
     return measured(
-        bench.velocity, bench.noise_std, cell.rival, task, bench.wished(seed),
+        bench.flows[cell.rival.model], bench.noise_std, cell.rival, task, bench.wished(seed),
         bench.about["steps"], seed, bench.reference,
     )  # fmt: skip
 
@@ -162,7 +172,8 @@ def in_time(bench: Bench, rival: Rival) -> Made:
     """The motions that are timed."""
     task, count = TIMED
     few = held_out(count, FRAMES, WISHED)
-    return make(bench.velocity, bench.noise_std, rival, task, few, bench.about["steps"], 0)
+    flow = bench.flows[rival.model]
+    return make(flow, bench.noise_std, rival, task, few, bench.about["steps"], 0)
 
 
 def score_of_data(bench: Bench, clips: Clips, seed: int) -> Scores:
@@ -223,7 +234,7 @@ def errors_of(made: Made) -> Scores:
 def main() -> None:
     """Measure, print the table, and write the records and the picture."""
     usual = Protocol()
-    parser = options_of("Every zero-shot method on one protocol.", FOLDER, usual)
+    parser = options_of("Every method of control on one protocol.", FOLDER, usual)
     add_methods(parser, usual.rivals)
     options = parser.parse_args()
     rivals = chosen(usual.rivals, options.methods)

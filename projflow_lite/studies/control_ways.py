@@ -45,6 +45,12 @@ RIVALS = (
 )
 """Every method that needs no training of its own."""
 
+TRAINED = (
+    Rival("control branch", "control_branch", model="control_branch"),
+    Rival("condmdi", "condmdi", model="masked"),
+)
+"""Methods that need a model that was trained for them, see `control_models`."""
+
 ABLATIONS = (
     Rival("euclid", "projflow", (("metric", "euclidean"),)),
     Rival("no fresh noise", "projflow", (("eta", 0.0),)),
@@ -113,7 +119,7 @@ def make(
     Keyframes and the noise of the start depend on the seed alone: all rivals have the same.
 
     Args:
-        velocity: the flow.
+        velocity: the flow, of the model that the rival brings if it brings one.
         noise_std: standard deviation of its noise, metres.
         rival: how.
         task: what is asked for.
@@ -226,7 +232,9 @@ def elsewhere(prior: Any, device: str) -> Velocity:
         return prior
     moved = prior.to(device)
 
-    def field(x_t: torch.Tensor, t: float, text: Text = None) -> torch.Tensor:
-        return moved(x_t.to(device), t, text).to("cpu")
+    def field(
+        x_t: torch.Tensor, t: float, text: Text = None, *observed: torch.Tensor
+    ) -> torch.Tensor:
+        return moved(x_t.to(device), t, text, *(known.to(device) for known in observed)).to("cpu")
 
     return field

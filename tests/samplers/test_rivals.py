@@ -183,5 +183,5 @@ def test_wrong_options_say_what_and_what_to_do(options, message):
 
 def test_every_method_has_a_name():
     assert set(RIVALS) <= set(METHODS)
-    with pytest.raises(ValueError, match="method is one of projflow, gmd, .*, dno, not 'ddmn'"):
+    with pytest.raises(ValueError, match="method is one of projflow, gmd, .*, condmdi, not 'ddmn'"):
         sample(method="ddmn")

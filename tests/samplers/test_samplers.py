@@ -178,7 +178,7 @@ WRONG = [
     ),
     (
         lambda: sample(method="projflo"),
-        "sample: method is one of projflow, gmd, gmd_keyframes, ddnm, replacement, imputation, flowdps, pnp_flow, flowchef, dps, dno, not 'projflo'",
+        "sample: method is one of projflow, gmd, gmd_keyframes, ddnm, replacement, imputation, flowdps, pnp_flow, flowchef, dps, dno, control_branch, condmdi, not 'projflo'",
     ),
     (lambda: sample("left_wrist"), "sample: wish is made by pin and its neighbours, not a str"),
     (lambda: sample(steps=0), "sample: steps is a whole number of at least 1, not 0"),

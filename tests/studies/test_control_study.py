@@ -6,9 +6,17 @@ import torch
 from untrained import small_prior
 
 from data_synth import held_out
+from projflow_lite.prior.conditioned import ControlledPrior, MaskedPrior
 from projflow_lite.samplers import GuideSettings, Misfit
 from projflow_lite.skeleton import JOINTS, LOWER_BODY
-from projflow_lite.studies import claims, control, control_tuning, control_ways, control_words
+from projflow_lite.studies import (
+    claims,
+    control,
+    control_models,
+    control_tuning,
+    control_ways,
+    control_words,
+)
 from projflow_lite.studies.cells import ALL, DATA, Rival
 from projflow_lite.studies.claims import TIME, Claim, claims_of, of_claim
 from projflow_lite.studies.control import Protocol
@@ -18,6 +26,7 @@ from projflow_lite.studies.control_ways import (
     EDIT,
     FREE,
     RIVALS,
+    TRAINED,
     Task,
     aim,
     make,
@@ -277,6 +286,25 @@ def test_the_best_rival_is_named_with_what_it_misses():
     assert text.endswith("not reproduced.")
 
 
+def test_a_trained_rival_is_not_the_best_untrained_one():
+    rows = [row("projflow", (1.0, 1.0)), row("ddnm", (3, 3)), row("control branch", (0.5, 0.5))]
+    assert "the best other is ddnm" in control_words.of_best(rows, "pelvis")
+    assert control_words.of_best(rows[::2], "pelvis") is None
+
+
+def test_costs_are_those_of_one_run_with_projflow_as_the_unit():
+    times = {"no wish": 1.0, "dps": 3.0, "projflow": 1.2, "dno": 30.0, "control branch": 1.8}
+    rows = [row(name, (1.0, 1.0), joint="average") | {TIME: t} for name, t in times.items()]
+    assert control_words.of_costs(rows) == (
+        "Time, projflow : dps : dno : control branch = 1.00 : 2.50 : 25.00 : 1.50; with as many "
+        "steps projflow is faster than a control branch in Figure 6: reproduced."
+    )
+    rows[2] = rows[2] | {TIME: 2.0}
+    assert control_words.of_costs(rows).endswith("control branch in Figure 6: not reproduced.")
+    assert control_words.of_costs(rows[:4]).endswith("= 1.00 : 1.50 : 15.00.")
+    assert control_words.of_costs(rows[:2]) is None
+
+
 def test_claims_are_counted_and_averages_come_first():
     rows = [row("projflow", (1.0, 1.1)), row("dno", (2.0, 2.1))]
     rows += [row("projflow", (2.0, 2.1), joint="average"), row("dno", (1.0, 1.1), joint="average")]
@@ -320,22 +348,98 @@ def test_the_papers_average_is_the_mean_of_its_joints_but_for_one_number():
     assert odd == [("dno", "trajectory error", 0.0063)]
 
 
-def test_the_rows_on_editing_say_that_projflow_is_ahead_of_imputation_in_everything():
+def test_the_rows_on_editing_put_projflow_between_imputation_and_a_control_branch():
     found = claims_of(EDIT_TABLE, COMPARED_OF_EDIT)
-    assert [claim.less for claim in found] == ["projflow", *["imputation"] * 3, "projflow"]
+    assert [claim.less for claim in found] == [
+        "projflow", *["imputation"] * 3, "projflow",
+        "control branch", *["projflow"] * 3, "control branch",
+    ]  # fmt: skip
     assert all(claim.joint == EDIT for claim in found)
 
 
 def test_claims_have_the_signs_of_the_printed_numbers():
     found = claims_of(TABLES, COMPARED)
     # Of ablations the average error is 0 as well: three columns of three rows for every joint.
-    assert len(found) == 4 * (3 + 6) + 3 * 3 * 7
+    assert len(found) == 4 * (3 + 6 + 7) + 3 * 3 * 7
+    assert Claim("average", "FID", "control branch", "projflow") in found
+    assert Claim("average", "average error", "projflow", "control branch") in found
     assert Claim("average", "FID", "projflow", "plain masking") in found
     assert Claim("average", "skating gmd", "euclid", "projflow") in found
     assert Claim("pelvis", "FID", "projflow", "gmd") in found
     assert Claim("average", "R top 3", "projflow", "dno") in found
     assert Claim("left_wrist", "skating gmd", "projflow", "dno") in found
     assert Claim("pelvis", "skating gmd", "dno", "projflow") in found
+
+
+# ------------------------------------------------------------------------------- trained rivals
+
+
+def taught(kind, prior, seed=1):
+    """A model made from a prior whose learning weights are no longer where they began."""
+    torch.manual_seed(seed)
+    model = kind.of(prior)
+    for weight in model.learning():
+        weight.data += 0.05 * torch.randn_like(weight)
+    return model
+
+
+WITH_TRAINED = Protocol(32, 2, 2, ("pelvis",), (5,), (FREE, RIVALS[1], *TRAINED), edit=False)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("trained")
+
+
+def run(prior, folder, models, protocol=WITH_TRAINED):
+    return control.run(prior, protocol, folder, progress=False, models=models)
+
+
+def test_trained_rivals_ask_models_of_their_own(prior, folder):
+    """An untrained branch says nothing, so its motions are those without a wish."""
+    models = {"control_branch": ControlledPrior.of(prior), "masked": taught(MaskedPrior, prior)}
+    rows = run(prior, folder, models)
+    assert rows[0]["left out"] is None
+    assert {row["method"] for row in rows[1:]} == {
+        "no wish",
+        "projflow",
+        "control branch",
+        "condmdi",
+    }
+    free, branch, masked = (
+        pick(rows, "pelvis", 5, name) for name in ("no wish", "control branch", "condmdi")
+    )
+    for name in COLUMNS:
+        assert free[name]["values"] == branch[name]["values"]
+    assert masked["FID"]["values"] != free["FID"]["values"]
+    assert "Left out" not in control.table(rows)
+    other = run(prior, folder, models | {"control_branch": taught(ControlledPrior, prior)})
+    moved = pick(other, "pelvis", 5, "control branch")
+    assert moved["FID"]["values"] != branch["FID"]["values"]  # not those of the weights before
+    assert pick(other, "pelvis", 5, "condmdi") == masked
+
+
+def test_rivals_without_a_model_are_left_out_and_it_is_said(prior, folder):
+    rows = run(prior, folder, {"masked": MaskedPrior.of(small_prior(seed=4))})
+    assert {row["method"] for row in rows[1:]} == {"no wish", "projflow"}
+    sentence = (
+        "Left out: control branch, whose model is not in the package; condmdi, whose model was "
+        "trained from another prior; projflow-lite train --recipe makes control_branch and masked "
+        "from the shipped prior."
+    )
+    assert rows[0]["left out"] == sentence
+    assert sentence in control.table(rows).splitlines()
+
+
+def test_shipped_models_of_another_prior_or_none_are_left_out(prior, tmp_path, monkeypatch):
+    """Whatever is shipped was not trained from a prior that was made here."""
+    field = control_models.field_of(prior, (FREE, *TRAINED), "cpu")
+    assert field.rivals == (FREE,)
+    assert set(field.absent) == {("control branch", "control_branch"), ("condmdi", "masked")}
+    monkeypatch.setattr("projflow_lite.prior.conditioned_files.files", lambda package: tmp_path)
+    field = control_models.field_of(prior, TRAINED, "cpu")
+    assert set(field.absent.values()) == {"is not in the package"}
+    assert control_models.field_of(prior, FEW, "cpu").absent == {}
 
 
 # ---------------------------------------------------------------------------------------- tuning
