@@ -2,7 +2,9 @@
 // board_layers.js before it. Python owns where handles are; the page says where they were dragged.
 
 const BOARD_ROLES = ["data", "noise", "wish", "prediction", "projected", "flow", "quiet"];
-const SEND_EVERY = 50; // milliseconds between two messages while a handle is dragged
+// Milliseconds between two messages while a handle is dragged. No line forms before a busy Python:
+// ipywidgets keeps back all but the newest until the last one was answered.
+const SEND_EVERY = 16;
 
 function buildBoard(root, model) {
   const title = element("span", { class: "pf-board-title" });

@@ -37,7 +37,9 @@ def test_functions_and_cells_are_short(path):
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_code_fits_the_page(path):
-    wide = [line for source in code_of(path) for line in source.splitlines() if len(line) > WIDEST_LINE]
+    wide = [
+        line for source in code_of(path) for line in source.splitlines() if len(line) > WIDEST_LINE
+    ]
     assert not wide
 
 
@@ -49,5 +51,7 @@ def test_each_leads_to_the_next_one_by_its_name(place):
         assert not links
         return
     following = NOTEBOOKS[place + 1]
-    title = nbformat.read(following, as_version=4).cells[0].source.splitlines()[0].removeprefix("# ")
+    title = (
+        nbformat.read(following, as_version=4).cells[0].source.splitlines()[0].removeprefix("# ")
+    )
     assert links == [(f"{following.name[:2]} {title}", following.name)]
