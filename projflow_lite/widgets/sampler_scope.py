@@ -72,7 +72,10 @@ class SamplerScope(widgets.VBox):
         self.moved = np.array([moved_by(step) for step in self.record])
         self._make_parts(height)
         self._draw_way()
-        self.said = Flipbook(self.step, [self.viewer, self.held, self.way], self._show)
+        self.said = Flipbook(
+            self.step, [self.viewer, self.held, self.way], self._show,
+            layout=widgets.Layout(align_self="center"),
+        )  # fmt: skip
         super().__init__(self._rows())
         self.noisy.observe(lambda change: self.said.redraw(), "value")
 
