@@ -246,8 +246,8 @@ FRONT_ENDS = {
     ),
     "board, drag": FrontEnd(BOARD, take_handle, ".board [data-name='h']", "page"),
     "board, drag, in Python": FrontEnd(BOARD, take_handle, ".board canvas", "answer"),
-    "sampler scope, step, in Python": FrontEnd(
-        SCOPE, take_keys(STEP), ".scope .widget-html", "page", ("keydown",)
+    "sampler scope, step": FrontEnd(
+        SCOPE, take_keys(STEP), ".scope .pf-viewer canvas", starts=("keydown",)
     ),
     "plotly figure, slider, in Python": FrontEnd(
         FIGURE, take_keys(".figure .noUi-handle"), ".figure .scatterlayer", "page", ("keydown",), PLOTLY

@@ -141,5 +141,6 @@ def table(outcomes: dict[str, Outcome], chosen: str) -> str:
             f'<td style="text-align: right; padding: 2px 6px">{number:.1f}</td>'
             for number in outcomes[name].numbers
         )
-        lines.append(f'<tr style="font-weight: {weight}"><td>{name}</td>{cells}</tr>')
+        named = f'<td style="white-space: nowrap">{name}</td>'
+        lines.append(f'<tr style="font-weight: {weight}">{named}{cells}</tr>')
     return f"<table><tr><th></th>{head}</tr>{''.join(lines)}</table>"

@@ -139,9 +139,8 @@ class MetricFamily(widgets.VBox):
         still = np.broadcast_to(self.pose, moving.shape[1:])
         at = self.viewer.spread * np.arange(3)[:, None, None, None] * [1.0, 0.0, 0.0]
         ghosts = [Motion(still + shift) for shift in at]
-        self.viewer.show(Motion(moving), *ghosts, names=[""] * 4)
-        # One name above each body: the thin one behind DDNM's bears it, for titles name the first.
-        self.viewer.names = ["", "GMD", "ProjFlow", "DDNM", "", ""]
+        names = ["from left to right: DDNM, GMD, ProjFlow", "the pose before", "", ""]
+        self.viewer.show(Motion(moving), *ghosts, names=names)
         self.numbers = [self._row(body) for body in self.bodies]
         self.table.value = table(self.numbers)
 
@@ -157,7 +156,8 @@ def table(numbers: list[tuple[float, ...]]) -> str:
     cell = '<td style="text-align: right; padding: 2px 8px">{:.1f}</td>'
     head = "".join(f'<th style="text-align: right; padding: 2px 8px">{c}</th>' for c in COLUMNS)
     lines = [
-        f"<tr><td>{name}</td>{''.join(cell.format(value) for value in row)}</tr>"
+        f'<tr><td style="white-space: nowrap">{name}</td>'
+        f"{''.join(cell.format(value) for value in row)}</tr>"
         for name, row in zip(NAMES, numbers, strict=True)
     ]
     return f"<table><tr><th></th>{head}</tr>{''.join(lines)}</table>"

@@ -116,7 +116,7 @@ def bar(name: str, value: float, floor: Range) -> str:
     )
     band = piece.format(low, max(high - low, 0.5), 0, 16, "background:#9996")
     body = piece.format(start, max(end - start, 0.7), 4, 8, f"background:{colour}")
-    track = "<div style='position:relative;width:120px;height:16px;overflow:hidden'>"
+    track = "<div style='position:relative;width:150px;height:16px;overflow:hidden'>"
     return (
         f"<tr><td style='{LABEL};font-weight:{weight}'>{name}</td>"
         f"<td>{track}{band}{body}</div></td>"
@@ -141,7 +141,7 @@ def scale() -> str:
     mark = "<span style='position:absolute;left:{:.0f}%;transform:translateX(-{}%)'>{:g}×</span>"
     ends = ((LOW, 0), (1.0, 50), (10.0, 50), (HIGH, 100))  # and how far left of its place each is
     marks = "".join(mark.format(place(x), shift, x) for x, shift in ends)
-    track = "<div style='position:relative;width:120px;height:16px'>"
+    track = "<div style='position:relative;width:150px;height:16px'>"
     return f"<tr style='opacity:0.7'><td></td><td>{track}{marks}</div></td><td></td><td></td></tr>"
 
 

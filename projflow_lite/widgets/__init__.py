@@ -2,6 +2,7 @@
 
 from projflow_lite.widgets.board import Board
 from projflow_lite.widgets.equation_card import EquationCard
+from projflow_lite.widgets.flipbook import Flipbook
 from projflow_lite.widgets.metric_explorer import MetricExplorer
 from projflow_lite.widgets.path_pad import BOUNDS, PLANES, PathPad
 from projflow_lite.widgets.pose_editor import PoseEditor
@@ -14,6 +15,7 @@ __all__ = [
     "PLANES",
     "Board",
     "EquationCard",
+    "Flipbook",
     "MetricExplorer",
     "PathPad",
     "PoseEditor",

@@ -2,7 +2,9 @@
 // board_layers.js before it. Python owns where handles are; the page says where they were dragged.
 
 const BOARD_ROLES = ["data", "noise", "wish", "prediction", "projected", "flow", "quiet"];
-const SEND_EVERY = 50; // milliseconds between two messages while a handle is dragged
+// Milliseconds between two messages while a handle is dragged. No line forms before a busy Python:
+// ipywidgets keeps back all but the newest until the last one was answered.
+const SEND_EVERY = 16;
 
 function buildBoard(root, model) {
   const title = element("span", { class: "pf-board-title" });
@@ -67,10 +69,11 @@ class BoardView {
       this.legend = legend;
       ui.legend.replaceChildren(...labelled.map(boardKey));
     }
-    ui.title.textContent = model.get("title");
+    const title = model.get("title");
+    if (ui.title.textContent !== title) ui.title.textContent = title;
     const shown = labelled.map(({ label }) => label).join(", ");
-    ui.canvas.setAttribute("aria-label",
-      `${model.get("title") || "Plane"}, axes ${model.get("labels").join(" and ")}. ${shown && `Shown: ${shown}.`}`);
+    const told = `${title || "Plane"}, axes ${model.get("labels").join(" and ")}. ${shown && `Shown: ${shown}.`}`;
+    if (ui.canvas.getAttribute("aria-label") !== told) ui.canvas.setAttribute("aria-label", told);
     this.redraw();
   }
 
@@ -124,6 +127,11 @@ class BoardView {
     const { node, at, along, label } = handle;
     const inside = this.map.clamp(at);
     const [px, py] = this.map.toPixels(...inside);
+    // What is written again, even if it is the same, is laid out again.
+    const { map, size, model } = this;
+    const state = JSON.stringify([px, py, at, along, label, handle.color, map, size.width, model.get("labels")]);
+    if (state === handle.shown) return;
+    handle.shown = state;
     node.style.transform = `translate(${px}px, ${py}px)`;
     node.style.setProperty("--key", `var(--pf-role-${handle.color})`);
     node.classList.toggle("pf-outside", inside[0] !== at[0] || inside[1] !== at[1]);

@@ -52,11 +52,12 @@ class Board(anywidget.AnyWidget):
     height = traitlets.Int(420).tag(sync=True)
     equal = traitlets.Bool(True).tag(sync=True)
 
-    layers: traitlets.List = traitlets.List().tag(sync=True)
+    layers: traitlets.List = traitlets.List().tag(sync=True, echo_update=False)
     data = float_bytes()
     handles: traitlets.List = traitlets.List().tag(sync=True)
     # From the page: {"moves": {name: [x, y, count]}}; `seen` is the highest count that was heard.
-    drag: traitlets.Dict = traitlets.Dict().tag(sync=True)
+    # The answer tells where the handles are, so an echo would only be one message more.
+    drag: traitlets.Dict = traitlets.Dict().tag(sync=True, echo_update=False)
     seen = traitlets.Int(0).tag(sync=True)
     problem = traitlets.Unicode("").tag(sync=True)
 

@@ -59,7 +59,7 @@ function drawAxes(ctx, camera, palette) {
     if (reach > 6) ctx.fillText("xyz"[axis], x0 + dx * (1 + 9 / reach), y0 + dy * (1 + 9 / reach));
   }
   ctx.textAlign = "left";
-  ctx.fillText("grid 0.5 m", 12, camera.height - 14);
+  if (camera.width >= 480) ctx.fillText("grid 0.5 m", 12, camera.height - 14); // else numbers stand there
 }
 
 /** The pose of one body at a time between two frames, into `out` (22 × 3, metres). */

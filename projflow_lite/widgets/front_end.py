@@ -24,9 +24,11 @@ def float_bytes() -> traitlets.Bytes:
     """A synced trait for an array of little-endian float32.
 
     What JavaScript sends arrives as a memoryview, and a `Bytes` trait silently refuses one:
-    the change would be lost without the conversion.
+    the change would be lost without the conversion. Nor is it echoed to the page that sent it.
     """
-    return traitlets.Bytes(b"").tag(sync=True, from_json=lambda value, widget: bytes(value))
+    return traitlets.Bytes(b"").tag(
+        sync=True, echo_update=False, from_json=lambda value, widget: bytes(value)
+    )
 
 
 def pack(array: ArrayLike) -> bytes:

@@ -14,6 +14,7 @@ from projflow_lite.motion import Motion
 from projflow_lite.samplers import GuideSettings, ProjectionStep, Step, Velocity, sample
 from projflow_lite.skeleton import N_JOINTS
 from projflow_lite.widgets.board import Board
+from projflow_lite.widgets.flipbook import Flipbook
 from projflow_lite.widgets.viewer import Viewer
 
 NAMES = ("projected", "predicted", "state")
@@ -45,7 +46,8 @@ class SamplerScope(widgets.VBox):
     Raises:
         ValueError: as `sample` does.
 
-    ``.record`` holds every `Step`, ``.step`` is the slider, ``.motion`` what came out.
+    ``.record`` holds every `Step`, ``.step`` is the slider, ``.motion`` what came out. All steps
+    are drawn at once, and the page turns them (see `Flipbook`).
     """
 
     def __init__(
@@ -69,15 +71,18 @@ class SamplerScope(widgets.VBox):
         self.frame_of_row = frames_of_rows(guide.rows if guide else wish.rows(frames))
         self.moved = np.array([moved_by(step) for step in self.record])
         self._make_parts(height)
-        super().__init__(self._rows())
         self._draw_way()
-        self._show()
-        self.step.observe(self._show, "value")
-        self.noisy.observe(self._show, "value")
+        self.said = Flipbook(
+            self.step, [self.viewer, self.held, self.way], self._show,
+            layout=widgets.Layout(align_self="center"),
+        )  # fmt: skip
+        super().__init__(self._rows())
+        self.noisy.observe(lambda change: self.said.redraw(), "value")
 
     def _make_parts(self, height: int) -> None:
         last = len(self.record) - 1
-        self.viewer = Viewer(height=height, layout=widgets.Layout(width="100%"))
+        self.viewer = Viewer(height=height, playing=False, layout=widgets.Layout(width="100%"))
+        self.viewer.frame = self._first_frame()
         self.step = widgets.IntSlider(
             value=last // 2, min=0, max=last, description="step",
             layout=widgets.Layout(width="340px"), style={"description_width": "40px"},
@@ -86,7 +91,6 @@ class SamplerScope(widgets.VBox):
             value=False, description="show the state x_t", indent=False,
             layout=widgets.Layout(width="170px"),
         )  # fmt: skip
-        self.said = widgets.HTML()
         layout = {"flex": "2 1 300px", "min_width": "280px"}
         self.held = Board(
             (0, max(1, self.motion.frames - 1)), (FLOOR - 0.3, 3.0),
@@ -106,9 +110,14 @@ class SamplerScope(widgets.VBox):
         controls = widgets.Box([self.step, self.noisy, self.said], layout=wrap)
         return [controls, widgets.Box([body, graphs], layout=wrap)]
 
-    def _show(self, change: dict[str, Any] | None = None) -> None:
-        """Draw the step that the slider is at."""
-        step = self.record[self.step.value]
+    def _first_frame(self) -> int:
+        """The first frame that was asked for: there is most to see while the steps go by."""
+        wish, last = self.motion.wish, self.motion.frames - 1
+        return 0 if wish is None else int(np.min(wish.markers(last + 1).frame, initial=last))
+
+    def _show(self, k: int) -> str:
+        """Draw a step; returns what there is to say of it."""
+        step = self.record[k]
         bodies = [
             Motion(x[0].double().numpy(), wish=wish)
             for x, wish in (
@@ -118,10 +127,10 @@ class SamplerScope(widgets.VBox):
         shown = 3 if self.noisy.value else 2
         self.viewer.show(*bodies[:shown], names=NAMES[:shown])
         self._draw_held(step)
-        now = 100 * self.moved[self.step.value]
+        now = 100 * self.moved[k]
         with self.way.hold():
             self.way.points("now", [[step.t, now]], "projected", size=6, opacity=1)
-        self.said.value = f"t = {step.t:.3f} → {step.t_next:.3f}, moved by {now:.1f} cm"
+        return f"t = {step.t:.3f} → {step.t_next:.3f}, moved by {now:.1f} cm"
 
     def _draw_held(self, step: Step) -> None:
         """Standard deviation of every row that acts, against its frame."""

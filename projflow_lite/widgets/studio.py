@@ -34,7 +34,7 @@ PROMPTS = (
     "a person jumps forward",
 )
 DRAW_FIRST = "Draw a path in the left picture, or choose a shape below it."
-SETTLE = 0.05  # seconds to wait for more changes, so that many quick ones make one motion
+SETTLE = 0.01  # seconds to wait for more changes, so that many quick ones make one motion
 
 
 class WishStudio(widgets.VBox):
@@ -141,8 +141,9 @@ class WishStudio(widgets.VBox):
     def _show_reference(self) -> None:
         """Put the body, and the path its joint takes now, behind the drawing."""
         reference = standing_pose() if self.motion is None else next(iter(self.motion)).positions
-        self.pad.bounds = room_for(reference, self.plane.value)
-        self.pad.show_reference(reference, self.joint.value)
+        with self.pad.hold_sync():  # one message
+            self.pad.bounds = room_for(reference, self.plane.value)
+            self.pad.show_reference(reference, self.joint.value)
 
     def _soon(self, *_: Any) -> None:
         """Run once things have settled: strokes drawn while we were busy make one motion."""

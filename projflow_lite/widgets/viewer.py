@@ -53,13 +53,13 @@ class Viewer(anywidget.AnyWidget):
     )  # fmt: skip
     _css = module("widgets.css")
 
-    data = float_bytes()
+    data = float_bytes()  # only Python sets what is shown: nothing of it needs an echo
     shape = traitlets.List(traitlets.Int()).tag(sync=True)
     fps = traitlets.Float(20.0).tag(sync=True)
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     solid = traitlets.Int(1).tag(sync=True)
     markers = float_bytes()
-    residual = traitlets.Float(None, allow_none=True).tag(sync=True)
+    residual = traitlets.Float(None, allow_none=True).tag(sync=True, echo_update=False)
 
     frame = traitlets.Int(0).tag(sync=True)
     playing = traitlets.Bool(True).tag(sync=True)
@@ -71,7 +71,7 @@ class Viewer(anywidget.AnyWidget):
     height = traitlets.Int(420).tag(sync=True)
     # Whether joints can be grabbed; and what was: {"joint", "frame", "at", "done", "count"}.
     grab = traitlets.Bool(False).tag(sync=True)
-    pull: traitlets.Dict = traitlets.Dict().tag(sync=True)
+    pull: traitlets.Dict = traitlets.Dict().tag(sync=True, echo_update=False)
 
     def __init__(
         self,

@@ -249,3 +249,15 @@ def test_wrong_input_is_refused_in_one_line_and_changes_nothing(draw, message):
 def test_bad_planes_are_refused(traits, message):
     with pytest.raises((ValueError, TraitError), match=message):
         Board(**traits)
+
+
+def test_a_drag_is_answered_without_an_echo(monkeypatch):
+    board, said = Board(), []
+    board.handle("h", (0, 0))
+    board.on_move(lambda name, at: board.points("cloud", [at]))
+    monkeypatch.setattr(type(board.comm), "kernel", object(), raising=False)
+    monkeypatch.setattr(board, "_send", lambda message, buffers=None: said.append(message))
+    board.set_state({"drag": {"moves": {"h": [1.0, 2.0, 1]}}})
+    (message,) = said
+    assert message["method"] == "update"
+    assert {"layers", "handles", "seen"} <= set(message["state"])

@@ -27,7 +27,10 @@ def unpacked(viewer):
 
 
 def layer(board, name):
-    return board._drawn[name][1]
+    """What a page would draw of a layer, ``(n, 2)``."""
+    (found,) = (each for each in board.layers if each["name"] == name)
+    xy = np.frombuffer(board.data, np.float32).reshape(-1, 2)
+    return xy[found["start"] : found["start"] + found["count"]]
 
 
 def test_its_motion_is_the_one_that_sample_makes(scope):
@@ -44,6 +47,7 @@ def test_the_slider_shows_each_step(scope):
         np.testing.assert_array_equal(bodies[0], scope.record[k].x1_projected[0])
         np.testing.assert_array_equal(bodies[1], scope.record[k].x1_hat[0])
         assert layer(scope.way, "now")[0, 0] == pytest.approx(scope.record[k].t)
+        assert scope.said.words.startswith(f"t = {scope.record[k].t:.3f}")
     assert scope.viewer.residual < 1e-6
 
 
