@@ -140,7 +140,7 @@ class Network(Inward):
     def __init__(
         self,
         words: int,
-        widths: tuple[int, int] = (192, 288),
+        widths: tuple[int, int] = (160, 240),
         condition: int = 256,
         mean: torch.Tensor | None = None,
     ) -> None:

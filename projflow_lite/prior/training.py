@@ -69,7 +69,7 @@ class Recipe:
     prompt_dropout: float = 0.1
     ema: float = 0.999
     lengths: tuple[int, ...] = (20, 60, 32, 80, 60, 120, 48, 60, 80, 196)
-    widths: tuple[int, int] = (192, 288)
+    widths: tuple[int, int] = (160, 240)
     bfloat16: bool = False
     seed: int = 0
 
@@ -91,7 +91,7 @@ RECIPES = {
         widths=(128, 192),
         bfloat16=True,
     ),
-    "shipped": Recipe(steps=17000, restart=12000, bfloat16=True),
+    "shipped": Recipe(steps=24000, learning_rate=1e-3, restart=16000, bfloat16=True),
 }
 
 
