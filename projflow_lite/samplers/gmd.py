@@ -87,8 +87,8 @@ def gmd(
         generator: where fresh noise is drawn from.
         text: prompts.
         goal: what else to reach: ``goal(x)`` of motions in metres, see `goals`.
-        scale: s, strength of `goal`, in 1 / metres if the goal is in metres. With a post of 0.3 m
-            in the way to one keyframe, of 16 walks 0, 13, 15 and 16 clear it at 0, 10, 20 and 40.
+        scale: s, strength of `goal`, in 1 / metres if the goal is in metres;
+            ``projflow-lite reproduce gmd-table`` counts who clears a post at which.
         pull: strength of a goal that comes with the imputation, its distance from what is known
             (eq. 12 at p = 1): it makes the sparse signal dense. At 0 there is imputation alone.
             More brings the mean of the keyframes nearer, until the worst of them gets worse.

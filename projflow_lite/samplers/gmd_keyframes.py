@@ -65,15 +65,12 @@ def gmd_keyframes(
         text: prompts, for both models.
         goal: what else to reach, such as `Avoid`. It guides the trajectory; then what is left of it
             when the pelvis keeps to that guides the motion.
-        scale: strength of `goal`. Trajectories give way more easily than motions: around the post
-            of `gmd`, 12 of 16 walks are clear at 3 and all at 10, but the keyframe is missed by
-            0.73 and 1.25 m, because the body cannot keep to such a plan.
+        scale: strength of `goal`. Trajectories give way more easily than motions, and a body
+            cannot keep to every plan: then the keyframe is missed.
         pull: strength with which both stages are drawn to what they impute, see `gmd`.
         trajectory_model: a flow of trajectories, see `Planner`; None if there is none.
-        switch: tau, the flow time before which the straight lines are imputed; 0: never. Without a
-            trajectory model and without a pull, later is closer: with 5 keyframes (see `gmd`) the
-            error is 0.146 m at 0.3, 0.127 m at 0.7 and 0.103 m at 0.9. With the pull it hardly
-            matters: 0.039 m at 0.3 and 0.036 m at 0.9. Before tau no goal acts between keyframes:
+        switch: tau, the flow time before which the straight lines are imputed; 0: never. ``projflow-lite
+            reproduce gmd-table`` measures its effect. Before tau no goal acts between keyframes:
             what is imputed is not pushed.
         options: further ones of `gmd`, for the motion.
 
