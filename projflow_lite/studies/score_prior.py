@@ -34,7 +34,7 @@ QUICK: dict[str, Any] = {"clips": 3 * BATCH, "repetitions": 2, "steps": (25,)}
 PROMPTS, QUICK_PROMPTS, SAMPLES = 12, 4, 10
 """Multimodality: this many prompts, and motions for each. The papers take 100 prompts."""
 
-REPETITIONS = 8
+REPETITIONS = 5
 
 COLUMNS = (
     "FID", "kinetic distance", "R top 1", "R top 2", "R top 3", "matching", "diversity",
