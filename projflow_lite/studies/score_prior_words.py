@@ -93,13 +93,14 @@ def shown(cell: dict[str, float]) -> str:
     return f"{cell['mean']:.3f} ± {cell['half width']:.3f} ({ratio})"
 
 
-FEET = """
+FEET = f"""
     What counts as skating here are mostly toes at the begin and end of a swing: fast while half a
     centimetre or more lower than they should be, and so under the 5 cm of the definition. It
-    happens in walks, most along curves and in turns. It is not the sampler: more steps do not help,
-    as the columns show, and fresh noise in every step helps a little only. Nor was it enough to
-    count feet eight times in the last round of training. What is left to try: longer training, or a
-    second network for the end of the flow."""
+    happens in walks, most along curves and in turns. The network's curves account for some of it,
+    as the column *{SPLINES}* shows. It is not the sampler: more steps do not help, and fresh noise
+    in every step helps a little only. Nor was it enough to count feet eight times in the last round
+    of training, or to train half as long again; and a second network for the end of the flow made
+    jerk and kinetic distance worse for what it won."""
 
 
 def missed(rows: list[dict[str, Any]], score: str) -> bool:
