@@ -69,9 +69,9 @@ def gmd_keyframes(
             cannot keep to every plan: then the keyframe is missed.
         pull: strength with which both stages are drawn to what they impute, see `gmd`.
         trajectory_model: a flow of trajectories, see `Planner`; None if there is none.
-        switch: tau, the flow time before which the straight lines are imputed; 0: never. ``projflow-lite
-            reproduce gmd-table`` measures its effect. Before tau no goal acts between keyframes:
-            what is imputed is not pushed.
+        switch: tau, the flow time before which the straight lines are imputed; 0: never. See
+            ``projflow-lite reproduce gmd-table`` for its effect. Before tau no goal acts between
+            keyframes: what is imputed is not pushed.
         options: further ones of `gmd`, for the motion.
 
     Returns:
