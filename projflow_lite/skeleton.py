@@ -74,6 +74,11 @@ LOWER_BODY: tuple[str, ...] = tuple(
 UPPER_BODY: tuple[str, ...] = tuple(name for name in JOINTS if name not in LOWER_BODY)
 """Spine, head and arms."""
 
+CONTROLLED: tuple[str, ...] = (
+    "pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist",
+)  # fmt: skip
+"""The joints that comparisons of papers pin."""
+
 ANKLES: tuple[int, int] = (JOINTS.index("left_ankle"), JOINTS.index("right_ankle"))
 FEET: tuple[int, int] = (JOINTS.index("left_foot"), JOINTS.index("right_foot"))
 """Indices of the balls of the feet: the joints that slide."""

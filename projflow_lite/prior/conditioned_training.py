@@ -28,10 +28,7 @@ from projflow_lite.prior.loss import FOOT_WEIGHT, loss_of, size_of
 from projflow_lite.prior.model import Prior
 from projflow_lite.prior.processes import Processes
 from projflow_lite.prior.training import Recipe, Trainer
-from projflow_lite.skeleton import JOINTS, LOWER_BODY, N_JOINTS
-
-CONTROLLED = ("pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist")
-"""The joints that are pinned in training, those of the comparisons in papers."""
+from projflow_lite.skeleton import CONTROLLED, JOINTS, LOWER_BODY, N_JOINTS
 
 NOTHING, EDIT, SOME_AXES = 0.1, 0.1, 0.1
 """Shares of motions of which nothing is known, of which the lower body is known in all frames, and

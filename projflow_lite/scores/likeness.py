@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from projflow_lite.scores.physics import check_long_enough
-from projflow_lite.skeleton import FPS, check_positions, joint_indices, number_array
+from projflow_lite.skeleton import CONTROLLED, FPS, check_positions, joint_indices, number_array
 
 STILL_SPEED, STILL_ACCELERATION = 0.03, 0.3
 """m/s and m/s²: what a motion-capture marker on a standing foot shows. Less is not seen as less."""
 
-ENDS = joint_indices(["pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist"])
+ENDS = joint_indices(CONTROLLED)
 
 
 def frechet_distance(a: ArrayLike, b: ArrayLike) -> float:

@@ -28,6 +28,7 @@ from data_synth import Clips, held_out
 from projflow_lite.prior import Prior
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import control_errors
+from projflow_lite.skeleton import CONTROLLED
 from projflow_lite.studies.bench import Bench, Seeds, begin
 from projflow_lite.studies.cells import (
     ALL,
@@ -59,7 +60,7 @@ from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chose
 __all__ = ["figure", "run", "sentences", "table"]
 
 FOLDER = Path("runs/control")
-JOINTS = ("pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist")
+JOINTS = CONTROLLED
 DENSITIES = (1, 2, 5, FRAMES // 4, FRAMES)
 REFERENCE, WISHED, OTHERS = 4000, 5000, 6000
 SEEDS = Seeds(REFERENCE, WISHED, OTHERS)

@@ -17,10 +17,17 @@ from numpy.typing import NDArray
 from tqdm.auto import tqdm
 
 from data_synth import Clips, held_out
-from projflow_lite.scores import control_errors, frechet_distance, interval
+from projflow_lite.scores import control_errors, frechet_distance
 from projflow_lite.scores.clips import physics
 from projflow_lite.skeleton import FEET, bone_lengths
-from projflow_lite.studies.fewer_steps import Features, features_of, fingerprint, stored
+from projflow_lite.studies.cells import (
+    DATA,
+    Features,
+    features_of,
+    fingerprint,
+    over_seeds,
+    stored,
+)
 from projflow_lite.studies.gmd_figure import figure
 from projflow_lite.studies.gmd_ways import (
     GROUND,
@@ -41,7 +48,6 @@ FOLDER = Path("runs/gmd-table")
 REFERENCE, WISHED, WALKED, OTHERS = 1000, 2000, 2500, 3000
 """Seeds of held-out clips: to compare with, to ask for, and what data itself scores."""
 
-DATA = "held-out data"
 COLUMNS = {
     "keyframes": (
         "error, m", "location error %", "trajectory error %", "FID", "kinetic distance",
@@ -170,11 +176,7 @@ def fingerprint_of(models: Models) -> str:
 def record(way: Way | None, values: list[dict[str, float]], clips: int) -> dict[str, Any]:
     """One row: how it was sampled and what it scored."""
     about: dict[str, Any] = way._asdict() if way else {"task": DATA, "method": DATA}
-    scores = {}
-    for name in values[0]:
-        column = [row[name] for row in values]
-        mean, half = interval(column)
-        scores[name] = {"mean": mean, "half width": half, "values": column}
+    scores = over_seeds(values, tuple(values[0]))
     return about | {"clips": clips, "seeds": len(values), "scores": scores}
 
 

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from projflow_lite.constraints import Orthographic, Wish, lift
 from projflow_lite.constraints.cameras import rotation
-from projflow_lite.skeleton import N_JOINTS, joint_index
+from projflow_lite.skeleton import CONTROLLED, N_JOINTS, joint_index
 
-JOINTS = ("pelvis", "left_foot", "right_foot", "head", "left_wrist", "right_wrist")
+JOINTS = CONTROLLED
 CROSS = "cross"
 """A task: the paths of a random choice of one to six of `JOINTS`, as Sketch2Anim's code draws it.
 """
