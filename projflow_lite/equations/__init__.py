@@ -149,6 +149,7 @@ from .sampler_moments import (
     sampler_moments,
     sampler_step,
 )
+from .walks import metric_over_time, walk_covariance
 
 __all__ = [
     "TABLE_5",
@@ -217,6 +218,7 @@ __all__ = [
     "masked_average",
     "masked_observation",
     "masked_update",
+    "metric_over_time",
     "mix_noise",
     "mixture_endpoint",
     "mixture_posterior",
@@ -257,5 +259,6 @@ __all__ = [
     "unvectorise",
     "variance_from_trust",
     "vectorise",
+    "walk_covariance",
     "weighted_average",
 ]

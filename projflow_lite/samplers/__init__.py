@@ -34,6 +34,7 @@ from projflow_lite.samplers.guidance import checked, guided
 from projflow_lite.samplers.guides import Guides, GuideSettings
 from projflow_lite.samplers.imputation import imputation
 from projflow_lite.samplers.misfit import Misfit
+from projflow_lite.samplers.moving import MovingMetric, MovingStep, projection_step
 from projflow_lite.samplers.pnp_flow import pnp_flow
 from projflow_lite.samplers.projflow import Step, Velocity, projflow
 from projflow_lite.samplers.replacement import replacement
@@ -48,6 +49,8 @@ __all__ = [
     "Guides",
     "Imputation",
     "Misfit",
+    "MovingMetric",
+    "MovingStep",
     "ProjectionStep",
     "Step",
     "Together",
@@ -96,7 +99,7 @@ class Method(NamedTuple):
 
 
 METHODS = {
-    "projflow": Method(projflow, ProjectionStep, takes_goals=False),
+    "projflow": Method(projflow, projection_step, takes_goals=False),
     "gmd": Method(gmd, pins_to_impute, takes_goals=True),
     "gmd_keyframes": Method(gmd_keyframes, pins_to_impute, takes_goals=True),
     "ddnm": Method(ddnm, partial(exact_rows, "ddnm"), takes_goals=False),
@@ -133,7 +136,7 @@ def sample(
     batch: int | None = None,
     guidance: float = 1.0,
     guides: bool | GuideSettings = True,
-    metric: str | ArrayLike = "kinematic",
+    metric: str | ArrayLike | MovingMetric = "kinematic",
     dtype: torch.dtype = torch.float32,
     **options: Any,
 ) -> Motion:
@@ -162,7 +165,8 @@ def sample(
             more exaggerates, and costs a second call of the network in every step.
         guides: whether sparse keyframes are helped by soft rows around them, see `Guides`; or the
             constants to do it with. For projflow.
-        metric: of the projection, see `Projector`. For projflow.
+        metric: of the projection, see `Projector`; or "moving" or a `MovingMetric`, which spreads
+            keyframes over time by itself, without guides. For projflow.
         dtype: of the sampler's arithmetic: torch.float32 or torch.float64.
         options: further arguments of the method, see its file in ``samplers/``.
 
@@ -184,14 +188,16 @@ def sample(
     times = flow_times(steps)
     sampler, make_aim, takes_goals, _ = METHODS[method]
     space: Any = prior if hasattr(prior, "unproject") else Metres()
+    noise_std = torch.as_tensor(getattr(prior, "noise_std", 1.0), dtype=dtype)
     aim: Any = None
     if wish is not None or takes_goals:
+        if isinstance(metric, str) and metric == "moving":
+            metric = MovingMetric(noise_std=float(noise_std.mean()))
         aim = make_aim(wish, frames, metric, dtype, guides)
     if takes_goals:
         check_pins(goal, aim.mask, aim.values)
         options |= {"goal": goal, "space": space}
     generator = torch.Generator().manual_seed(seed)
-    noise_std = torch.as_tensor(getattr(prior, "noise_std", 1.0), dtype=dtype)
     x0 = draw_noise(space, noise_std, (batch or 1, frames, N_JOINTS, 3), dtype, generator)
     velocity = checked(guided(prior, guidance))
     with torch.no_grad():  # and not inference mode: a goal's gradient goes through these tensors
