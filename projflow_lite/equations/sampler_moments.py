@@ -39,7 +39,9 @@ def endpoint_precision(t: float, covariance: ArrayLike) -> NDArray:
     _before_the_end("endpoint_precision", t)
     C = real_array("endpoint_precision", "covariance", covariance, (None, None))
     C = positive_definite("endpoint_precision", "covariance", C)
-    return np.linalg.inv(C) + t**2 / (1 - t) ** 2 * np.eye(len(C))
+    P = np.linalg.inv(C)
+    P = (P + P.T) / 2  # an inverse is symmetric up to rounding only, and much of it for a bad C
+    return P + t**2 / (1 - t) ** 2 * np.eye(len(C))
 
 
 def mixture_endpoint(

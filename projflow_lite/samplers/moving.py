@@ -33,8 +33,9 @@ MOST_ENTRIES = 6000
 class MovingMetric:
     """The constants of a metric over time.
 
-    Measured on the synthetic data's pelvis: it starts about 0.3 m from the mean clip's and moves
-    at about 0.5 m/s on an axis, a velocity that it forgets in about 5 s.
+    The synthetic data's pelvis moves at about 0.5 m/s on an axis of the ground, a velocity that it
+    forgets in about 5 s. All of its clips start over the origin; a wish may start elsewhere, so
+    `start` is not 0.
 
     Attributes:
         start, speed, memory: of the walk, metres, metres a second and seconds; see

@@ -64,6 +64,16 @@ def test_gain_is_gaussian_conditioning():
     np.testing.assert_allclose(x.reshape(5, 2, 3)[:, 0, 0], S[:, 3] / S[3, 3], rtol=1e-8)
 
 
+@pytest.mark.parametrize("t", [0.0, 0.5])
+def test_a_long_walk_can_be_projected_with(t):
+    """Frames of a smooth walk are nearly the same place, so the inverse of S is badly rounded."""
+    S = eq.walk_covariance(60, 0.3, 0.5, 5.0)
+    R = eq.metric_over_time(t, S, [[1.0]], 0.76)
+    x = eq.project(np.zeros(180), np.eye(180)[[3 * 20]], np.ones(1), R, np.zeros((1, 1)))
+    C = np.linalg.solve(np.eye(60) + (t / (1 - t) / 0.76) ** 2 * S, S)
+    np.testing.assert_allclose(x[::3], C[:, 20] / C[20, 20], atol=1e-5)
+
+
 @pytest.mark.parametrize("name", ["start", "speed", "memory"])
 def test_walk_refuses_what_is_not_above_0(name):
     given = {"start": 0.3, "speed": 0.5, "memory": 5.0, name: 0.0}

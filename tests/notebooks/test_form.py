@@ -21,7 +21,7 @@ def code_of(path: Path) -> list[str]:
 
 
 def test_there_are_notebooks():
-    assert len(NOTEBOOKS) >= 15
+    assert len(NOTEBOOKS) >= 17
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
