@@ -36,7 +36,7 @@ class ReachExplorer(BoardExplorer):
     """Drag keyframes: what one projection makes of a joint's path, by three metrics.
 
     Above is where the joint is on one axis in every frame; below, for each step of a sampler, how
-    many frames come along with a keyframe.
+    many frames come more than half of the way along with the first keyframe.
 
     Args:
         motions: predicted motions ``(frames, 22, 3)``, metres, by name; one is chosen in a menu.
@@ -67,7 +67,7 @@ class ReachExplorer(BoardExplorer):
         label = f"{joint.replace('_', ' ')}, {'xyz'[axis]}, m"
         board = Board(across, up, ("frame", label), height=340, equal=False)
         self.times = Board(
-            (0, 1), (0, float(self.frames)), ("flow time t", "frames that come along"),
+            (0, 1), (0, float(self.frames)), ("flow time t", "frames along"),
             height=190, equal=False,
         )  # fmt: skip
         self.pins = [f"key {k + 1}" for k in range(len(keyframes))]
@@ -127,7 +127,7 @@ class ReachExplorer(BoardExplorer):
         self.words.value = f"Worst acceleration on this axis, m/s²: {', '.join(worst)}."
 
     def draw_reach(self) -> None:
-        """For every step of a sampler, how many frames come along with the first keyframe."""
+        """For every step of a sampler, how many frames follow the first keyframe."""
         moving = self.step(MOVING)
         assert isinstance(moving, MovingStep)
         key, times, now = round(self.place("key 1")[0]), flow_times(STEPS)[:-1], self.t.value
@@ -142,9 +142,9 @@ class ReachExplorer(BoardExplorer):
         return x[0, :, joint_index(self.joint, "ReachExplorer"), self.axis].numpy().copy()
 
 
-def frames_along(C: Array, frame: int) -> float:
-    """Frames that come along with one: all shares C[n, frame] / C[frame, frame], added up."""
-    return float(C[:, frame].sum() / C[frame, frame])
+def frames_along(C: Array, frame: int) -> int:
+    """Frames that come more than half of the way along with one: C[n, frame] / C[frame, frame]."""
+    return int((C[:, frame] > C[frame, frame] / 2).sum())
 
 
 def worst_acceleration(path: Sequence[float] | Array) -> float:

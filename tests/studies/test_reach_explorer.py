@@ -69,5 +69,6 @@ def test_a_dragged_keyframe_lies_in_a_whole_frame():
 
 
 def test_numbers_by_hand():
-    assert frames_along(np.array([[2.0, 1.0], [1.0, 4.0]]), 0) == 1.5
+    C = np.array([[2.0, 1.1, 0.9], [1.1, 4.0, 0.0], [0.9, 0.0, 1.0]])
+    assert [frames_along(C, frame) for frame in range(3)] == [2, 1, 2]
     assert worst_acceleration([0.0, 0.0, 0.1, 0.0]) == pytest.approx(80)
