@@ -34,8 +34,8 @@ class MovingMetric:
     """The constants of a metric over time.
 
     The synthetic data's pelvis moves at about 0.5 m/s on an axis of the ground, a velocity that it
-    forgets in about 5 s. All of its clips start over the origin; a wish may start elsewhere, so
-    `start` is not 0.
+    forgets in about 5 s. All of its clips start over the origin; a wish may start elsewhere, and
+    so may the walk.
 
     Attributes:
         start, speed, memory: of the walk, metres, metres a second and seconds; see

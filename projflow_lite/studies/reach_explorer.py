@@ -49,6 +49,8 @@ class ReachExplorer(BoardExplorer):
     ``.paths`` holds the paths ``(frames,)`` that are shown, by the names of `LOOKS`.
     """
 
+    children: Sequence[widgets.Widget]
+
     def __init__(
         self,
         motions: Mapping[str, Array],
@@ -67,7 +69,7 @@ class ReachExplorer(BoardExplorer):
         label = f"{joint.replace('_', ' ')}, {'xyz'[axis]}, m"
         board = Board(across, up, ("frame", label), height=340, equal=False)
         self.times = Board(
-            (0, 1), (0, float(self.frames)), ("flow time t", "frames along"),
+            (0, 1), (0, 1.05 * self.frames), ("flow time t", "frames along"),
             height=190, equal=False,
         )  # fmt: skip
         self.pins = [f"key {k + 1}" for k in range(len(keyframes))]
@@ -83,7 +85,7 @@ class ReachExplorer(BoardExplorer):
         self.speed = slider("speed, m/s", usual.speed, 0.1, 5, 0.1)
         self.until = slider("until", usual.until, 0.5, 0.99)
         super().__init__(board, [self.motion, self.t, self.memory, self.speed, self.until])
-        self.children = (board, self.times, *self.children[1:])
+        self.children = [board, self.times, *self.children[1:]]
 
     @property
     def metric(self) -> MovingMetric:
