@@ -54,7 +54,7 @@ from projflow_lite.studies.control_ways import (
     make,
 )
 from projflow_lite.studies.control_words import COLUMNS, sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chosen, options_of
 
 __all__ = ["figure", "run", "sentences", "table"]

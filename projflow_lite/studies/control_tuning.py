@@ -24,7 +24,7 @@ from projflow_lite.prior import Prior, load_prior
 from projflow_lite.studies.cells import Rival, features_of, fingerprint, mean_of, stored
 from projflow_lite.studies.control import FOLDER, Protocol, measured, run, table
 from projflow_lite.studies.control_ways import ABLATIONS, FREE, RIVALS, Task, elsewhere
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 
 NEAR = 0.05
 """Metres by which keyframes may be missed on average."""

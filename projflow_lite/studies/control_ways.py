@@ -16,7 +16,7 @@ from data_synth import Clips
 from projflow_lite.constraints import pin
 from projflow_lite.prior.model import Text
 from projflow_lite.projection import kinematic_joint_metric
-from projflow_lite.samplers import METHODS, GuideSettings, Imputation, euler, flow_times
+from projflow_lite.samplers import METHODS, GuideSettings, Imputation, euler, flow_times, guided
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.skeleton import LOWER_BODY, joint_indices
 from projflow_lite.studies.cells import Rival, Scores
@@ -158,6 +158,7 @@ def sampled(
     """One batch of one rival."""
     options = dict(rival.options)
     times = flow_times(options.pop("steps", steps))
+    velocity = guided(velocity, options.pop("guidance", 1.0))
     if not rival.method:
         return euler(velocity, x0, times, texts)
     options = {key: value for key, value in options.items() if key not in OF_AIM}

@@ -29,7 +29,7 @@ from projflow_lite.studies.control_ways import FREE, RIVALS, time_ratio
 from projflow_lite.studies.control_words import COLUMNS
 from projflow_lite.studies.equal_time_figure import figure
 from projflow_lite.studies.equal_time_words import BUDGET, COUNT, RATIO, sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.sensitivity_sweeps import USUAL
 from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chosen, options_of
 

@@ -37,7 +37,7 @@ from projflow_lite.studies.cells import (
 from projflow_lite.studies.fewer_steps_figure import figure
 from projflow_lite.studies.fewer_steps_ways import FINE, Way, all_ways, make
 from projflow_lite.studies.fewer_steps_words import COLUMNS, DATA, OFF_FLOW, sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 
 __all__ = ["figure", "run", "sentences", "table"]
 
@@ -126,7 +126,7 @@ def fine_motion(prior: Prior, wished: Clips, seed: int, place: Path) -> NDArray:
 
 def name_of(way: Way, seed: int) -> str:
     """Name of the file of one result."""
-    parts = [way.task, way.schedule, way.solver, way.steps, way.noise, way.eta]
+    parts = [way.task, way.schedule, way.solver, way.steps, way.noise, way.eta, way.metric]
     name = "_".join(str(part) for part in parts if part != "")
     return f"{name.replace(', ', '-').replace(' ', '-')}/seed-{seed}.json"
 

@@ -41,7 +41,7 @@ from projflow_lite.studies.cells import (
 )
 from projflow_lite.studies.control import Protocol, errors_of, rows_of
 from projflow_lite.studies.control_ways import RIVALS, Task, make
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.real_wishes_figure import figure
 from projflow_lite.studies.real_wishes_words import COLUMNS, SOURCE, TO_RECORDED, sentences, table
 from projflow_lite.studies.recorded import RECORDED, read_recorded
