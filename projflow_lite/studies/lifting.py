@@ -74,8 +74,8 @@ class Protocol(NamedTuple):
         effort: how much the baselines may learn.
     """
 
-    clips: int = 128
-    seeds: int = 4
+    clips: int = 64
+    seeds: int = 3
     steps: int = 25
     joints: tuple[str, ...] = JOINTS
     rivals: tuple[Rival, ...] = RIVALS_OF_LIFTING

@@ -38,8 +38,8 @@ QUICK_SWEEPS = tuple(sweep.shortened() for sweep in SWEEPS)
 
 def protocol_of(
     sweeps: tuple[Sweep, ...],
-    clips: int = 128,
-    seeds: int = 4,
+    clips: int = 64,
+    seeds: int = 3,
     steps: int = 25,
     joints: tuple[str, ...] = JOINTS,
     densities: tuple[int, ...] = DENSITIES,
