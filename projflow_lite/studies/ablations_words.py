@@ -169,7 +169,7 @@ def of_ours(rows: list[Row], column: str) -> str | None:
 
 
 def sentences(rows: list[Row]) -> list[str]:
-    """What the rows say: the paper's order, our own metric, every part by every score, the noise."""
+    """What the rows say: the paper's order, our metric, every part by every score, the noise."""
     said = [of_order(rows, column) for column in JUDGED[:2]]
     said += [of_ours(rows, column) for column in JUDGED]
     said += [of_part(rows, part, column) for part, column in itertools.product(TAKEN, JUDGED)]
