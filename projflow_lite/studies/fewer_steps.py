@@ -50,7 +50,7 @@ def run(
     prior: Prior,
     quick: bool = False,
     clips: int = 64,
-    seeds: int = 4,
+    seeds: int = 3,
     folder: str | Path = FOLDER,
     progress: bool = True,
 ) -> list[dict[str, Any]]:
@@ -146,7 +146,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="minutes, not hours; wide intervals")
     parser.add_argument("--clips", type=int, default=64, help="motions of a seed (default 64)")
     parser.add_argument(
-        "--seeds", type=int, default=4, help="more narrow the intervals (default 4)"
+        "--seeds", type=int, default=3, help="more narrow the intervals (default 3)"
     )
     parser.add_argument("--folder", type=Path, default=FOLDER, help="for results as they are made")
     parser.add_argument("--out", type=Path, help="folder for results/ and pictures/")

@@ -21,7 +21,7 @@ from projflow_lite.studies.posterior_figure import (
 )
 
 COLOURS = {
-    "even": PINK, "quadratic": BLUE, "cubic": GREEN, "both ends": ORANGE,
+    "even": PINK, "quadratic": BLUE, "cubic": GREEN,
     "Euler": BLUE, "multistep": RED, "Heun": GREEN, "midpoint": ORANGE,
 }  # fmt: skip
 LINES = {"original": "--"}

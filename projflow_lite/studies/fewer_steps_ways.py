@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import itertools
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -74,7 +73,6 @@ SCHEDULES: dict[str, Callable[[float], float]] = {
     "even": lambda u: u,
     "quadratic": lambda u: 1 - (1 - u) ** 2,
     "cubic": lambda u: 1 - (1 - u) ** 3,
-    "both ends": lambda u: (1 - math.cos(math.pi * u)) / 2,
 }
 """Flow time after the share `u` of all steps."""
 
@@ -120,16 +118,24 @@ FINE = Way("cubic", "midpoint", 100)
 """As close to the flow as is affordable."""
 
 
+TO_THE_END = (DEFAULT, DEFAULT._replace(metric="moving"))
+"""Readings that are taken to the largest number of steps, and with other solvers than Euler's."""
+
+
 def all_ways(quick: bool = False) -> list[Way]:
-    """Everything that is measured; only Euler's steps are taken to the largest number."""
+    """Everything that is measured; only Euler's steps are taken to the largest number.
+
+    Without a wish: every spacing, with solvers of one call a step; those of two with cubic times.
+    With one: the spacing that `sample` takes.
+    """
     steps = QUICK_STEPS if quick else STEPS
     twice = [count for count in steps if 4 * count <= steps[-1]]
     one_call = {"Euler": steps, "multistep": steps[:-1]}
-    every = one_call | {"Heun": twice, "midpoint": twice}
-    spacings = [name for name in SCHEDULES if not (quick and name == "both ends")]
-    found = [Way(*how) for how in crossed(spacings, every)]
+    two_calls = {"Heun": twice, "midpoint": twice}
+    found = [Way(*how) for how in crossed(SCHEDULES, one_call) + crossed(["cubic"], two_calls)]
     for wish, reading in itertools.product(WISHES[:1] if quick else WISHES, READINGS):
-        hows = crossed(["quadratic"], every if reading == DEFAULT else one_call)
+        counts = one_call if reading in TO_THE_END else {"Euler": steps[:-1]}
+        hows = crossed(["quadratic"], counts | (two_calls if reading == DEFAULT else {}))
         found += [Way(*how, *wish, *reading) for how in hows]
     return found
 
