@@ -137,7 +137,7 @@ def test_a_way_that_follows_the_flow_is_not_off_it(few, tmp_path, monkeypatch):
 
 
 def test_too_few_clips_or_seeds_are_refused():
-    with pytest.raises(ValueError, match="at least 64 clips and 2 seeds, not 32 and 4"):
+    with pytest.raises(ValueError, match="at least 64 clips and 2 seeds, not 32 and 3"):
         fewer_steps.run(small_prior(), clips=32)
 
 
