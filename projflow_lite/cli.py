@@ -48,8 +48,8 @@ def build_parser() -> argparse.ArgumentParser:
     )
     reproduce.add_argument(
         "name",
-        help="contact-sheet, control, data-card, equal-time, errata,\nfewer-steps, gmd-table, "
-        "lifting, noise-reading, posterior,\nreal-wishes or sensitivity",
+        help="ablations, contact-sheet, control, data-card, equal-time,\n"
+        "errata, fewer-steps, gmd-table, lifting, posterior,\nreal-wishes or sensitivity",
     )
     reproduce.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     reproduce.add_argument("--out", type=Path, default=Path("book"), help="folder (default: book)")

@@ -268,11 +268,11 @@ class Block:
             # For a single motion torch's product of matrices pays a call for each block.
             z = (self.inverse * r.mT).sum(2, keepdim=True) if batch == 1 else self.inverse @ r
             return z.permute(2, 1, 0).flatten(1)
-        # Blocks of all motions as one long dimension: a product of long rows is a fast one.
-        v = variance[:, self.own].unflatten(1, self.shape).movedim(1, 0).flatten(1)
-        C = self.dense.unsqueeze(2).expand(-1, -1, batch, -1).flatten(2)
-        z = eliminate(C, v, r.movedim(1, 0).flatten(1))
-        return z.unflatten(1, (batch, -1)).movedim(0, 1).flatten(1)
+        # Rows first, then motions, then blocks: every turn of the elimination is then a product of
+        # long contiguous stretches.
+        v = variance[:, self.own].unflatten(1, self.shape).movedim(1, 0)
+        C = self.dense.unsqueeze(2).expand(-1, -1, batch, -1)
+        return eliminate(C, v, r.movedim(1, 0)).movedim(0, 1).flatten(1)
 
 
 LARGEST_IN_LOCKSTEP = 12

@@ -108,7 +108,7 @@ def test_every_study_is_named_in_the_help_and_no_other_is_run(capsys):
     assert main(["reproduce", "posteriors"]) == 2
     error = capsys.readouterr().err
     assert "'posteriors' is not a study" in error
-    assert "noise-reading" in error
+    assert "ablations" in error
 
 
 def test_the_camera_sees_the_left_hand_on_the_right_and_up_is_up():

@@ -23,7 +23,7 @@ from projflow_lite.studies.cells import (
 )
 from projflow_lite.studies.claims import TIME
 from projflow_lite.studies.control_ways import elsewhere, timed
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 
 
 class Seeds(NamedTuple):

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from projflow_lite.prior import Prior, load_prior
 from projflow_lite.studies import (
+    ablations,
     contact_sheet,
     control,
     data_card,
@@ -21,7 +22,6 @@ from projflow_lite.studies import (
     fewer_steps,
     gmd_table,
     lifting,
-    noise_reading,
     posterior,
     real_wishes,
     sensitivity,
@@ -53,6 +53,11 @@ def run_contact_sheet(wanted: Wanted) -> dict[str, Any]:
 def run_control(wanted: Wanted) -> dict[str, Any]:
     """Which method obeys, trained or not, and at which cost? Table 1 and 7 of ProjFlow."""
     return compared("control", control, wanted)
+
+
+def run_ablations(wanted: Wanted) -> dict[str, Any]:
+    """Do the parts of ProjFlow earn their place? Table 3, Table 6 and Figure 7."""
+    return compared("ablations", ablations, wanted)
 
 
 def run_lifting(wanted: Wanted) -> dict[str, Any]:
@@ -110,15 +115,6 @@ def records(name: str, rows: Any, wanted: Wanted, prior: Prior) -> Path:
     return path
 
 
-def run_noise_reading(wanted: Wanted) -> dict[str, Any]:
-    """Which noise should eq. 9 mix, and how much of it should be fresh?"""
-    clips, seeds = (24, 2) if wanted.quick else (64, 3)
-    prior = load_prior(wanted.prior)
-    return shown(
-        "noise-reading", noise_reading, noise_reading.run(prior, clips, seeds), wanted, prior
-    )
-
-
 def run_fewer_steps(wanted: Wanted) -> dict[str, Any]:
     """How few steps keep the quality of a hundred?"""
     prior = load_prior(wanted.prior)
@@ -138,6 +134,7 @@ def run_data_card(wanted: Wanted) -> dict[str, Any]:
 
 
 STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
+    "ablations": run_ablations,
     "contact-sheet": run_contact_sheet,
     "control": run_control,
     "data-card": run_data_card,
@@ -146,7 +143,6 @@ STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
     "fewer-steps": run_fewer_steps,
     "gmd-table": run_gmd_table,
     "lifting": run_lifting,
-    "noise-reading": run_noise_reading,
     "posterior": run_posterior,
     "real-wishes": run_real_wishes,
     "sensitivity": run_sensitivity,

@@ -46,6 +46,7 @@ from projflow_lite.studies.control_models import Models, field_of, said_of
 from projflow_lite.studies.control_ways import (
     ABLATIONS,
     EDIT,
+    OURS,
     QUICK_DNO,
     RIVALS,
     TRAINED,
@@ -54,7 +55,7 @@ from projflow_lite.studies.control_ways import (
     make,
 )
 from projflow_lite.studies.control_words import COLUMNS, sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chosen, options_of
 
 __all__ = ["figure", "run", "sentences", "table"]
@@ -82,17 +83,17 @@ class Protocol(NamedTuple):
         clock: whether methods are timed.
     """
 
-    clips: int = 128
-    seeds: int = 4
+    clips: int = 64
+    seeds: int = 3
     steps: int = 25
     joints: tuple[str, ...] = JOINTS
     densities: tuple[int, ...] = DENSITIES
-    rivals: tuple[Rival, ...] = RIVALS + TRAINED + ABLATIONS
+    rivals: tuple[Rival, ...] = RIVALS + OURS + TRAINED + ABLATIONS
     edit: bool = True
     clock: bool = True
 
 
-QUICK_RIVALS = (*RIVALS[:-1], QUICK_DNO, *TRAINED, *ABLATIONS)
+QUICK_RIVALS = (*RIVALS[:-1], QUICK_DNO, *OURS, *TRAINED, *ABLATIONS)
 QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), QUICK_RIVALS)
 """A first look: its intervals are wide, and DNO gets a tenth of its looks."""
 

@@ -26,7 +26,8 @@ LOOKS = {
     "replacement": (GREEN, "v", "--"), "imputation": (GREEN, "^", "-"), "gmd": (PINK, "^", "-"),
     "flowdps": (ORANGE, "o", "-"), "pnp_flow": (ORANGE, "D", "--"), "flowchef": (BLUE, "D", "--"),
     "dps": (PINK, "o", "--"), "dps, endpoint": (PINK, "v", ":"), "dno": (GREY, "D", "-"),
-    "control branch": (RED, "D", "--"), "condmdi": (RED, "v", ":"),
+    "metric over time": (GREEN, "o", "-"), "control branch": (RED, "D", "--"),
+    "condmdi": (RED, "v", ":"),
 }  # fmt: skip
 """Colour, mark and line of each method."""
 

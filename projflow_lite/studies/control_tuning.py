@@ -23,8 +23,8 @@ from data_synth import held_out
 from projflow_lite.prior import Prior, load_prior
 from projflow_lite.studies.cells import Rival, features_of, fingerprint, mean_of, stored
 from projflow_lite.studies.control import FOLDER, Protocol, measured, run, table
-from projflow_lite.studies.control_ways import ABLATIONS, FREE, RIVALS, Task, elsewhere
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.control_ways import ABLATIONS, FREE, OURS, RIVALS, Task, elsewhere
+from projflow_lite.studies.keyframes import FRAMES
 
 NEAR = 0.05
 """Metres by which keyframes may be missed on average."""
@@ -35,6 +35,7 @@ REFERENCE, WISHED = 7000, 8000
 
 GRIDS: dict[str, dict[str, tuple[Any, ...]]] = {
     "projflow": {"eta": ("paper", "ddpm"), "c0": (1.0, 3.0, 10.0)},
+    "metric over time": {"until": (0.9, 0.95, 0.98), "eta": ("paper", "ddpm")},
     "ddnm": {"eta": (0.0, "ddpm", "paper")},
     "replacement": {"noise": ("original", "fresh")},
     "imputation": {"until": (0.97, 1.0)},
@@ -68,7 +69,7 @@ def settings_of(rival: Rival) -> list[Rival]:
 
 def tune(
     prior: Prior,
-    rivals: tuple[Rival, ...] = RIVALS,
+    rivals: tuple[Rival, ...] = RIVALS + OURS,
     clips: int = 64,
     seeds: int = 2,
     steps: int = 25,
@@ -149,7 +150,7 @@ def main() -> None:
     options = parser.parse_args()
     rivals = tuple(
         rival
-        for rival in RIVALS
+        for rival in RIVALS + OURS
         if rival != FREE and (options.methods is None or rival.name in options.methods)
     )
     prior = load_prior(options.prior)

@@ -16,7 +16,15 @@ from data_synth import Clips
 from projflow_lite.constraints import pin
 from projflow_lite.prior.model import Text
 from projflow_lite.projection import kinematic_joint_metric
-from projflow_lite.samplers import METHODS, GuideSettings, Imputation, euler, flow_times
+from projflow_lite.samplers import (
+    METHODS,
+    GuideSettings,
+    Imputation,
+    MovingMetric,
+    euler,
+    flow_times,
+    guided,
+)
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.skeleton import LOWER_BODY, joint_indices
 from projflow_lite.studies.cells import Rival, Scores
@@ -41,9 +49,12 @@ RIVALS = (
     Rival("flowchef", "flowchef"),
     Rival("dps", "dps"),
     Rival("dps, endpoint", "dps", (("through", "endpoint"), ("scale", 0.3))),
-    Rival("dno", "dno"),
+    Rival("dno", "dno", (("iterations", 30), ("solver_steps", 5), ("rate", 0.2))),
 )
 """Every method that needs no training of its own."""
+
+OURS = (Rival("metric over time", "projflow", (("metric", "moving"),)),)
+"""ProjFlow as we would set it: see `projflow_lite.samplers.MovingMetric`."""
 
 TRAINED = (
     Rival("control branch", "control_branch", model="control_branch"),
@@ -158,9 +169,10 @@ def sampled(
     """One batch of one rival."""
     options = dict(rival.options)
     times = flow_times(options.pop("steps", steps))
+    velocity = guided(velocity, options.pop("guidance", 1.0))
     if not rival.method:
         return euler(velocity, x0, times, texts)
-    options = {key: value for key, value in options.items() if key not in OF_AIM}
+    options = of_sampler(options)
     return METHODS[rival.method].sampler(
         velocity, aim(rival, *wanted), x0, times, generator, texts, noise_std=noise_std, **options
     )
@@ -168,8 +180,15 @@ def sampled(
 
 OF_GUIDES = tuple(field.name for field in fields(GuideSettings))
 OF_METRIC = ("w_kin", "ridge")
+OF_TIME = tuple(field.name for field in fields(MovingMetric))
 OF_AIM = ("metric", "guides", "reading", *OF_GUIDES, *OF_METRIC)
 """Options of ProjFlow that are not the sampler's: they say what it asks for in every step."""
+
+
+def of_sampler(options: dict[str, Any]) -> dict[str, Any]:
+    """The options of a rival that its sampler takes; `until` is one of several samplers."""
+    aimed = OF_AIM + (OF_TIME if options.get("metric") == "moving" else ())
+    return {name: value for name, value in options.items() if name not in aimed}
 
 
 def aim(rival: Rival, task: Task, frames: NDArray, targets: NDArray) -> Any:
@@ -198,6 +217,8 @@ def aim(rival: Rival, task: Task, frames: NDArray, targets: NDArray) -> Any:
 def metric_of(rival: Rival) -> Any:
     """The metric that a rival projects with."""
     options = dict(rival.options)
+    if options.get("metric") == "moving":
+        return MovingMetric(**{name: options[name] for name in OF_TIME if name in options})
     weights = {name: options[name] for name in OF_METRIC if name in options}
     return kinematic_joint_metric(**weights) if weights else options.get("metric", "kinematic")
 

@@ -24,7 +24,7 @@ from projflow_lite.studies.claims import (
     verdict,
 )
 from projflow_lite.studies.control_paper import EDIT_TABLE, SOURCES, TABLES
-from projflow_lite.studies.control_ways import EDIT, TRAINED
+from projflow_lite.studies.control_ways import EDIT, OURS, TRAINED
 
 ERRORS = ("trajectory error", "location error", "average error")
 SHOWN = (
@@ -65,7 +65,7 @@ def of_best(rows: list[dict[str, Any]], joint: str) -> str | None:
     """Is ProjFlow's FID the best of all untrained methods, its own ablations aside?"""
     own = find(rows, joint, "projflow")
     others = [r for r in rows if r["joint"] == joint and r["keys"] == ALL and r is not own]
-    aside = ("no wish", DATA, *SOURCES, *(rival.name for rival in TRAINED))
+    aside = ("no wish", DATA, *SOURCES, *(rival.name for rival in TRAINED + OURS))
     others = [r for r in others if r["method"] not in aside]
     if own is None or not others:
         return None
@@ -98,6 +98,23 @@ def of_cells(rows: list[dict[str, Any]], other: str, column: str = "FID") -> str
     )
 
 
+def of_ours(rows: list[dict[str, Any]]) -> str | None:
+    """What a metric over time changes, over all joints and densities."""
+    pair = [find(rows, "average", name) for name in (OURS[0].name, "projflow")]
+    if pair[0] is None or pair[1] is None:
+        return None
+    said = []
+    for column in ("FID", "kinetic distance", "bone error %", "worst acceleration"):
+        ours, usual = (row["scores"][column] for row in pair if row is not None)
+        difference = difference_of(ours, usual)
+        certain = "" if abs(difference.mean) > difference.half_width else " (undecided)"
+        said.append(f"{column} {shown(ours)} instead of {shown(usual)}{certain}")
+    return (
+        "A metric over time in place of metric and guides, as exact, its constants measured or "
+        f"chosen on other clips: {'; '.join(said)}."
+    )
+
+
 def of_costs(rows: list[dict[str, Any]]) -> str | None:
     """What guidance, optimisation and trained control cost beside ProjFlow, as in Figure 6."""
     times = {r["method"]: r[TIME] for r in rows if r["joint"] == "average" and TIME in r}
@@ -124,7 +141,7 @@ def sentences(rows: list[dict[str, Any]]) -> list[str]:
     known = [sentence for sentence in claimed + edits if sentence]
     said = [of_exactness(rows), *(of_best(rows, joint) for joint in joints)]
     said += [of_cells(rows, other) for other in SOURCES]
-    said += [of_time(rows), of_costs(rows), count_of(known), *known]
+    said += [of_ours(rows), of_time(rows), of_costs(rows), count_of(known), *known]
     return [sentence for sentence in said if sentence]
 
 

@@ -25,11 +25,11 @@ from projflow_lite.studies import control
 from projflow_lite.studies.bench import Bench, begin
 from projflow_lite.studies.cells import Rival, stored
 from projflow_lite.studies.control import Protocol, in_time, rows_of, score_of_data
-from projflow_lite.studies.control_ways import FREE, RIVALS, time_ratio
+from projflow_lite.studies.control_ways import FREE, OURS, RIVALS, time_ratio
 from projflow_lite.studies.control_words import COLUMNS
 from projflow_lite.studies.equal_time_figure import figure
 from projflow_lite.studies.equal_time_words import BUDGET, COUNT, RATIO, sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.sensitivity_sweeps import USUAL
 from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chosen, options_of
 
@@ -45,8 +45,8 @@ TURNS = 3
 """How often each count is timed, in turns with ProjFlow; the best turn counts."""
 
 FULL = Protocol(
-    joints=("pelvis", "left_wrist"), densities=(1, 5, FRAMES // 4), rivals=RIVALS, edit=False,
-    clock=False,
+    joints=("pelvis", "left_wrist"), densities=(1, 5, FRAMES // 4), rivals=RIVALS + OURS,
+    edit=False, clock=False,
 )  # fmt: skip
 QUICK = FULL._replace(clips=32, seeds=2, steps=5, joints=("left_wrist",), densities=(5,))
 """A first look: wide intervals, one joint, one density, and very few steps."""

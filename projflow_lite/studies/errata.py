@@ -22,7 +22,7 @@ from projflow_lite.studies.control_ways import AND
 from projflow_lite.studies.errata_figure import figure
 from projflow_lite.studies.errata_forms import ERRATA
 from projflow_lite.studies.errata_words import sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.shell import asked_for, carry_out, options_of
 
 __all__ = ["figure", "run", "sentences", "table"]

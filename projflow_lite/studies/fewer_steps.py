@@ -37,7 +37,7 @@ from projflow_lite.studies.cells import (
 from projflow_lite.studies.fewer_steps_figure import figure
 from projflow_lite.studies.fewer_steps_ways import FINE, Way, all_ways, make
 from projflow_lite.studies.fewer_steps_words import COLUMNS, DATA, OFF_FLOW, sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 
 __all__ = ["figure", "run", "sentences", "table"]
 
@@ -50,7 +50,7 @@ def run(
     prior: Prior,
     quick: bool = False,
     clips: int = 64,
-    seeds: int = 4,
+    seeds: int = 3,
     folder: str | Path = FOLDER,
     progress: bool = True,
 ) -> list[dict[str, Any]]:
@@ -126,7 +126,7 @@ def fine_motion(prior: Prior, wished: Clips, seed: int, place: Path) -> NDArray:
 
 def name_of(way: Way, seed: int) -> str:
     """Name of the file of one result."""
-    parts = [way.task, way.schedule, way.solver, way.steps, way.noise, way.eta]
+    parts = [way.task, way.schedule, way.solver, way.steps, way.noise, way.eta, way.metric]
     name = "_".join(str(part) for part in parts if part != "")
     return f"{name.replace(', ', '-').replace(' ', '-')}/seed-{seed}.json"
 
@@ -146,7 +146,7 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="minutes, not hours; wide intervals")
     parser.add_argument("--clips", type=int, default=64, help="motions of a seed (default 64)")
     parser.add_argument(
-        "--seeds", type=int, default=4, help="more narrow the intervals (default 4)"
+        "--seeds", type=int, default=3, help="more narrow the intervals (default 3)"
     )
     parser.add_argument("--folder", type=Path, default=FOLDER, help="for results as they are made")
     parser.add_argument("--out", type=Path, help="folder for results/ and pictures/")

@@ -21,7 +21,7 @@ from projflow_lite.studies.posterior_figure import (
 )
 
 COLOURS = {
-    "even": PINK, "quadratic": BLUE, "cubic": GREEN, "both ends": ORANGE,
+    "even": PINK, "quadratic": BLUE, "cubic": GREEN,
     "Euler": BLUE, "multistep": RED, "Heun": GREEN, "midpoint": ORANGE,
 }  # fmt: skip
 LINES = {"original": "--"}
@@ -69,15 +69,15 @@ def draw_wish(axes: Any, rows: list[dict[str, Any]], data: dict[str, Any]) -> No
     methods, task = methods_of(rows), rows[0]["task"].replace("_", " ").capitalize()
     usual = usual_of(methods)
     readings = {
-        f"{m[2]}, η {m[3] or 0}": part
+        "metric over time" if m[4] == "moving" else f"{m[2]}, η {m[3] or 0}": part
         for m, part in methods.items()
         if m[:2] == ("quadratic", "Euler")
     }
     solvers = {
         m[1]: part for m, part in methods.items() if m[0] == "quadratic" and m[2:] == usual[2:]
     }
-    draw(axes[0], readings, "kinetic distance", data, f"{task}: which noise")
-    draw(axes[1], readings, "worst acceleration", data, f"{task}: which noise")
+    draw(axes[0], readings, "kinetic distance", data, f"{task}: noise and metric")
+    draw(axes[1], readings, "worst acceleration", data, f"{task}: noise and metric")
     draw(axes[2], solvers, "kinetic distance", data, f"{task}: solvers, default noise")
 
 

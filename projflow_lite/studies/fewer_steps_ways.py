@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import inspect
 import itertools
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
@@ -16,19 +15,34 @@ from projflow_lite.prior import Prior
 from projflow_lite.prior.model import Text
 from projflow_lite.samplers.euler import euler, multistep
 from projflow_lite.samplers.projflow import Velocity, projflow
-from projflow_lite.studies.noise_reading import through_keyframes
+from projflow_lite.studies.keyframes import through_keyframes
 
 STEPS, QUICK_STEPS = (5, 10, 15, 25, 50, 100), (5, 10, 50)
 
-WISHES = (("pelvis", 5), ("left_wrist", 1), ("pelvis", 1), ("left_wrist", 5))
-"""Joint and number of keyframes. The first two are measured with every spacing and solver."""
+WISHES = (("pelvis", 5), ("left_wrist", 1))
+"""Joint and number of keyframes."""
 
-DEFAULT = tuple(inspect.signature(projflow).parameters[name].default for name in ("noise", "eta"))
-READINGS = list(dict.fromkeys([
-    DEFAULT, ("implied", "ddpm"), ("implied", "paper"), ("implied", 0.0),
-    ("original", "paper"), ("original", 0.0),
-]))  # fmt: skip
-"""Which noise eq. 9 mixes, and the share of it that is fresh; the sampler's default first."""
+
+class Reading(NamedTuple):
+    """What a step with a wish does beside the flow: the noise it mixes, and how it projects.
+
+    Attributes:
+        noise, eta: see `projflow_lite.samplers.projflow`.
+        metric: "kinematic", with guides, or "moving", see `projflow_lite.samplers.sample`.
+    """
+
+    noise: str = ""
+    eta: str | float = ""
+    metric: str = ""
+
+
+PARAMETERS = inspect.signature(projflow).parameters
+DEFAULT = Reading(PARAMETERS["noise"].default, PARAMETERS["eta"].default, "kinematic")
+READINGS = (
+    DEFAULT, DEFAULT._replace(metric="moving"), DEFAULT._replace(eta="ddpm"),
+    DEFAULT._replace(eta=0.0), DEFAULT._replace(noise="original"),
+)  # fmt: skip
+"""What is compared; the sampler's default first."""
 
 
 def heun(velocity: Velocity, times: Sequence[float]) -> Velocity:
@@ -59,7 +73,6 @@ SCHEDULES: dict[str, Callable[[float], float]] = {
     "even": lambda u: u,
     "quadratic": lambda u: 1 - (1 - u) ** 2,
     "cubic": lambda u: 1 - (1 - u) ** 3,
-    "both ends": lambda u: (1 - math.cos(math.pi * u)) / 2,
 }
 """Flow time after the share `u` of all steps."""
 
@@ -82,6 +95,7 @@ class Way(NamedTuple):
     keyframes: int = 0
     noise: str = ""
     eta: str | float = ""
+    metric: str = ""
 
     @property
     def times(self) -> list[float]:
@@ -104,21 +118,25 @@ FINE = Way("cubic", "midpoint", 100)
 """As close to the flow as is affordable."""
 
 
+TO_THE_END = (DEFAULT, DEFAULT._replace(metric="moving"))
+"""Readings that are taken to the largest number of steps, and with other solvers than Euler's."""
+
+
 def all_ways(quick: bool = False) -> list[Way]:
-    """Everything that is measured; only Euler's steps are taken to the largest number."""
+    """Everything that is measured; only Euler's steps are taken to the largest number.
+
+    Without a wish: every spacing, with solvers of one call a step; those of two with cubic times.
+    With one: the spacing that `sample` takes.
+    """
     steps = QUICK_STEPS if quick else STEPS
     twice = [count for count in steps if 4 * count <= steps[-1]]
     one_call = {"Euler": steps, "multistep": steps[:-1]}
-    every = one_call | {"Heun": twice, "midpoint": twice}
-    spacings = [name for name in SCHEDULES if not (quick and name == "both ends")]
-    found = [Way(*how) for how in crossed(spacings, every)]
-    for k, wish in enumerate(WISHES[:1] if quick else WISHES):
-        for reading in READINGS:
-            usual = reading == DEFAULT and k < 2
-            hows = crossed(["quadratic"], every if usual else one_call)
-            if usual and not quick:
-                hows = crossed(spacings, every)
-            found += [Way(*how, *wish, *reading) for how in hows]
+    two_calls = {"Heun": twice, "midpoint": twice}
+    found = [Way(*how) for how in crossed(SCHEDULES, one_call) + crossed(["cubic"], two_calls)]
+    for wish, reading in itertools.product(WISHES[:1] if quick else WISHES, READINGS):
+        counts = one_call if reading in TO_THE_END else {"Euler": steps[:-1]}
+        hows = crossed(["quadratic"], counts | (two_calls if reading == DEFAULT else {}))
+        found += [Way(*how, *wish, *reading) for how in hows]
     return found
 
 
@@ -157,7 +175,7 @@ def make(prior: Prior, way: Way, clips: Clips, seed: int) -> tuple[NDArray, int]
         if not way.joint:
             x1 = euler(velocity, x0, way.times, clips.captions)
         else:
-            project = through_keyframes(clips.positions, way.joint, way.keyframes)
+            project = through_keyframes(clips.positions, way.joint, way.keyframes, way.metric)
             x1 = projflow(
                 velocity, project, x0, way.times, generator, clips.captions,
                 noise=way.noise, eta=way.eta, noise_std=prior.noise_std,

@@ -32,7 +32,9 @@ AT_LEAST_THE_DATA = ("R top 1", "R top 3")
 TOLERANCE = 0.05
 """A loss of less than this share of a score is none, however certain."""
 
-WAY = ("schedule", "solver", "steps", "calls", "noise", "eta")
+WAY = ("schedule", "solver", "steps", "calls", "noise", "eta", "metric")
+START = "{schedule:10s}{solver:10s}{steps:>6s}{calls:>6s}  {noise:9s}{eta:6s}{metric:10s}"
+"""How a line of the table begins."""
 
 
 def table(rows: list[dict[str, Any]]) -> str:
@@ -42,7 +44,7 @@ def table(rows: list[dict[str, Any]]) -> str:
         f"{first['seeds']} seeds of {first['clips']} clips each. Mean ± 95 %. "
         "R: share of motions whose prompt is found among 32."
     ]
-    head = f"{'schedule':10s}{'solver':10s}{'steps':>6s}{'calls':>6s}  {'noise':9s}{'eta':6s}"
+    head = START.format(**{name: name for name in WAY})
     for task in dict.fromkeys(row["task"] for row in rows):
         lines += ["", task]
         lines.append(head + "".join(f"{name.removesuffix(' gmd'):>20s}" for name in COLUMNS))
@@ -53,7 +55,11 @@ def table(rows: list[dict[str, Any]]) -> str:
 def line_of(row: dict[str, Any]) -> str:
     """One row of the table."""
     way = {name: str(row.get(name, "")) for name in WAY}
-    start = "{schedule:10s}{solver:10s}{steps:>6s}{calls:>6s}  {noise:9s}{eta:6s}".format(**way)
+    start = (
+        "{schedule:10s}{solver:10s}{steps:>6s}{calls:>6s}  {noise:9s}{eta:6s}{metric:10s}".format(
+            **way
+        )
+    )
     cells = (row["scores"].get(name) for name in COLUMNS)
     shown = (f"{c['mean']:.3f} ± {c['half width']:.3f}" if c else "" for c in cells)
     return start + "".join(f"{cell:>20s}" for cell in shown)
@@ -109,7 +115,7 @@ def lost(row: dict[str, Any], reference: dict[str, Any], data: dict[str, Any]) -
 
 def method_of(row: dict[str, Any]) -> tuple:
     """What tells methods apart that differ in more than the number of steps."""
-    return row["schedule"], row["solver"], row["noise"], row["eta"]
+    return row["schedule"], row["solver"], row["noise"], row["eta"], row["metric"]
 
 
 def methods_of(rows: Iterable[dict[str, Any]]) -> dict[tuple, list[dict[str, Any]]]:
@@ -209,7 +215,8 @@ def of_solvers(rows: list[dict[str, Any]], calls: int = 10) -> list[str]:
 def spelled(row: dict[str, Any]) -> str:
     """A method in words."""
     noise = f", {row['noise']} noise, eta {row['eta']}" if row["noise"] else ""
-    return f"{row['schedule']} {row['solver']}{noise}"
+    metric = ", metric over time" if row["metric"] == "moving" else ""
+    return f"{row['schedule']} {row['solver']}{noise}{metric}"
 
 
 def listed(words: list[str]) -> str:

@@ -21,7 +21,7 @@ from projflow_lite.studies.gmd_ways import (
     walks,
     wish_of,
 )
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.widgets import Viewer
 
 COUNTS = (1, 2, 5, 15, FRAMES)

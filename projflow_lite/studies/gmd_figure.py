@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from projflow_lite.studies.gmd_ways import FREE, PROJFLOW, TWO_STAGES
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.posterior_figure import BLUE, GREEN, GREY, ORANGE, PINK, RED, STYLE
 
 COLOURS = {

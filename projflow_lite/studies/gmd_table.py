@@ -40,7 +40,7 @@ from projflow_lite.studies.gmd_ways import (
     targets_of,
     walks,
 )
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 
 __all__ = ["figure", "load_models", "run", "table"]
 

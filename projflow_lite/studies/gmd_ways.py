@@ -21,7 +21,7 @@ from projflow_lite.samplers.gmd import Metres, draw_noise, gmd
 from projflow_lite.samplers.gmd_imputation import GROUND, Imputation
 from projflow_lite.samplers.gmd_keyframes import gmd_keyframes
 from projflow_lite.skeleton import N_JOINTS
-from projflow_lite.studies.noise_reading import FRAMES, keyframes
+from projflow_lite.studies.keyframes import FRAMES, keyframes
 
 STEPS = 25
 DENSITIES, QUICK_DENSITIES = (1, 2, 5, 15, FRAMES), (5, FRAMES)

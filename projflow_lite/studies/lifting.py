@@ -38,6 +38,7 @@ from projflow_lite.studies.cells import (
     quality,
     summarised,
 )
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.lifting_figure import figure
 from projflow_lite.studies.lifting_pictures import CROSS, JOINTS, Errors
 from projflow_lite.studies.lifting_ways import (
@@ -50,7 +51,6 @@ from projflow_lite.studies.lifting_ways import (
     school,
 )
 from projflow_lite.studies.lifting_words import COLUMNS, sentences, table
-from projflow_lite.studies.noise_reading import FRAMES
 from projflow_lite.studies.shell import add_methods, asked_for, carry_out, chosen, options_of
 
 __all__ = ["figure", "run", "sentences", "table"]
@@ -74,8 +74,8 @@ class Protocol(NamedTuple):
         effort: how much the baselines may learn.
     """
 
-    clips: int = 128
-    seeds: int = 4
+    clips: int = 64
+    seeds: int = 3
     steps: int = 25
     joints: tuple[str, ...] = JOINTS
     rivals: tuple[Rival, ...] = RIVALS_OF_LIFTING

@@ -16,7 +16,7 @@ from projflow_lite.samplers import METHODS, euler, flow_times
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.studies import lifting_depths, lifting_direct, lifting_retrieval
 from projflow_lite.studies.cells import Rival
-from projflow_lite.studies.control_ways import OF_AIM, RIVALS, guides_of, metric_of
+from projflow_lite.studies.control_ways import RIVALS, guides_of, metric_of, of_sampler
 from projflow_lite.studies.lifting_depths import Lifter
 from projflow_lite.studies.lifting_direct import Direct, answered
 from projflow_lite.studies.lifting_lessons import CLIPS, SEED, kept, textbook
@@ -174,7 +174,7 @@ def answer(
     if rival.method == "direct":
         return answered(learnt.direct, order.shot, order.drawings, order.prompts)
     times = flow_times(steps)
-    options = {key: value for key, value in rival.options if key not in OF_AIM}
+    options = of_sampler(dict(rival.options))
     with torch.no_grad():
         if not rival.method:
             return euler(velocity, order.x0, times, order.prompts).numpy()

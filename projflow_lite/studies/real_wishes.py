@@ -40,8 +40,8 @@ from projflow_lite.studies.cells import (
     quality,
 )
 from projflow_lite.studies.control import Protocol, errors_of, rows_of
-from projflow_lite.studies.control_ways import RIVALS, Task, make
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.control_ways import OURS, RIVALS, Task, make
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.real_wishes_figure import figure
 from projflow_lite.studies.real_wishes_words import COLUMNS, SOURCE, TO_RECORDED, sentences, table
 from projflow_lite.studies.recorded import RECORDED, read_recorded
@@ -53,8 +53,8 @@ HELD_OUT = "held-out"
 SEEDS = Seeds(reference=12_000, wished=13_000, others=14_000)
 
 FULL = Protocol(
-    joints=("pelvis", "left_wrist"), densities=(1, 5, FRAMES // 4), rivals=RIVALS, edit=False,
-    clock=False,
+    joints=("pelvis", "left_wrist"), densities=(1, 5, FRAMES // 4), rivals=RIVALS + OURS,
+    edit=False, clock=False,
 )  # fmt: skip
 QUICK = control.QUICK._replace(
     seeds=2, joints=("left_wrist",), rivals=control.QUICK.rivals[: len(RIVALS)], edit=False,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from projflow_lite.skeleton import N_JOINTS, joint_index
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 
 RECORDED, OWN = "recorded", "recorded (known bones)"
 

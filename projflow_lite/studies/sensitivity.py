@@ -22,7 +22,7 @@ from projflow_lite.prior import Prior
 from projflow_lite.studies import control
 from projflow_lite.studies.control import Protocol
 from projflow_lite.studies.control_ways import FREE
-from projflow_lite.studies.noise_reading import FRAMES
+from projflow_lite.studies.keyframes import FRAMES
 from projflow_lite.studies.sensitivity_figure import figure
 from projflow_lite.studies.sensitivity_sweeps import SWEEPS, USUAL, Sweep
 from projflow_lite.studies.sensitivity_words import sentences, table
@@ -38,8 +38,8 @@ QUICK_SWEEPS = tuple(sweep.shortened() for sweep in SWEEPS)
 
 def protocol_of(
     sweeps: tuple[Sweep, ...],
-    clips: int = 128,
-    seeds: int = 4,
+    clips: int = 64,
+    seeds: int = 3,
     steps: int = 25,
     joints: tuple[str, ...] = JOINTS,
     densities: tuple[int, ...] = DENSITIES,

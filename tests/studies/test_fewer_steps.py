@@ -44,7 +44,14 @@ def test_quadratic_times_are_those_that_sample_takes():
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-@pytest.mark.parametrize("wish", [(), ("left_wrist", 5, "implied", 0.0)])
+@pytest.mark.parametrize(
+    "wish",
+    [
+        (),
+        ("left_wrist", 5, "implied", 0.0, "kinematic"),
+        ("left_wrist", 5, "implied", "paper", "moving"),
+    ],
+)
 def test_network_calls_are_counted_and_keyframes_met(solver, wish, clips):
     way = Way("cubic", solver, 4, *wish)
     x, calls = make(small_prior(), way, clips, seed=0)
@@ -75,7 +82,7 @@ def test_solvers_have_the_order_that_books_give_them(solver, order):
 def test_every_way_is_measured_once_and_quick_ones_are_fewer():
     ways, quick = all_ways(), all_ways(quick=True)
     assert len(set(ways)) == len(ways)
-    assert sum(way.calls for way in quick) < 0.1 * sum(way.calls for way in ways)
+    assert sum(way.calls for way in quick) < 0.2 * sum(way.calls for way in ways)
     assert {way.steps for way in ways} == {5, 10, 15, 25, 50, 100}
     assert {way.task for way in ways} >= {
         "no wish",
@@ -83,7 +90,7 @@ def test_every_way_is_measured_once_and_quick_ones_are_fewer():
         "left_wrist, 1 keyframe",
     }
     assert {(way.noise, way.eta) for way in ways if way.joint} >= {
-        ("implied", "ddpm"), ("implied", "paper"), ("implied", 0.0), ("original", 0.0),
+        ("implied", "ddpm"), ("implied", "paper"), ("implied", 0.0), ("original", "paper"),
     }  # fmt: skip
 
 
@@ -130,7 +137,7 @@ def test_a_way_that_follows_the_flow_is_not_off_it(few, tmp_path, monkeypatch):
 
 
 def test_too_few_clips_or_seeds_are_refused():
-    with pytest.raises(ValueError, match="at least 64 clips and 2 seeds, not 32 and 4"):
+    with pytest.raises(ValueError, match="at least 64 clips and 2 seeds, not 32 and 3"):
         fewer_steps.run(small_prior(), clips=32)
 
 
@@ -140,7 +147,14 @@ def row(steps, jerk, fid, solver="Euler", task="no wish", found=1.0):
         name: {"mean": float(np.mean(column)), "half width": 0.0, "values": list(column)}
         for name, column in ((n, np.broadcast_to(v, 2)) for n, v in values.items())
     }
-    way = {"schedule": "quadratic", "solver": solver, "steps": steps, "noise": "", "eta": ""}
+    way = {
+        "schedule": "quadratic",
+        "solver": solver,
+        "steps": steps,
+        "noise": "",
+        "eta": "",
+        "metric": "",
+    }
     return {"task": task, "calls": steps, "clips": 64, "seeds": 2, "scores": scores} | way
 
 

@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import torch
 
 from data_synth import ACTIONS, make_clips
 from projflow_lite.prior.training import RECIPES, train
 from projflow_lite.skeleton import JOINTS
-from projflow_lite.studies import contact_sheet, noise_reading
+from projflow_lite.studies import contact_sheet, keyframes
 
 
 @pytest.fixture(scope="module")
@@ -17,33 +18,18 @@ def prior(tmp_path_factory):
 
 
 def test_keyframes_are_spread_and_every_frame_is_every_frame():
-    assert noise_reading.keyframes(1).tolist() == [30]
-    assert noise_reading.keyframes(5).tolist() == [10, 20, 30, 39, 49]
-    assert noise_reading.keyframes(60).tolist() == list(range(60))
+    assert keyframes.keyframes(1).tolist() == [30]
+    assert keyframes.keyframes(5).tolist() == [10, 20, 30, 39, 49]
+    assert keyframes.keyframes(60).tolist() == list(range(60))
 
 
-@pytest.mark.parametrize("reading", noise_reading.READINGS)
-def test_every_clip_goes_through_its_own_keyframes(prior, reading):
+@pytest.mark.parametrize("metric", ["kinematic", "moving"])
+def test_every_clip_goes_through_its_own_keyframes(metric):
     clips = make_clips(3, seed=1)
-    options = noise_reading.READINGS[reading]
-    x = noise_reading.controlled(prior, clips, "left_wrist", 5, 2.0, 3, options, seed=0)
-    frames, joint = noise_reading.keyframes(5), JOINTS.index("left_wrist")
+    step = keyframes.through_keyframes(clips.positions, "left_wrist", 5, metric)
+    x = step(torch.randn(3, 60, 22, 3), 0.5).numpy()
+    frames, joint = keyframes.keyframes(5), JOINTS.index("left_wrist")
     np.testing.assert_array_equal(x[:, frames, joint], clips.positions[:, frames, joint])
-
-
-def test_the_table_has_a_row_for_everything_that_was_asked(prior):
-    rows = noise_reading.run(prior, 3, 2, 2, ("pelvis",), (1,), (1.0,))
-    assert [row["method"] for row in rows] == ["held-out data", "no wish", *noise_reading.READINGS]
-    for row in rows:
-        assert all(np.isfinite([c["mean"], c["half width"]]).all() for c in row["scores"].values())
-    text = noise_reading.table(rows)
-    assert len(text.splitlines()) == 1 + len(rows)
-    assert "kinetic distance" in text
-
-
-def test_held_out_motion_has_perfect_bones_in_the_table(prior):
-    row = noise_reading.run(prior, 3, 2, 2, (), (), ())[0]["scores"]
-    assert row["bone error %"]["mean"] < 1e-3
 
 
 def test_pictures_show_every_action(prior, tmp_path):
