@@ -130,11 +130,12 @@ def all_ways(quick: bool = False) -> list[Way]:
     """
     steps = QUICK_STEPS if quick else STEPS
     twice = [count for count in steps if 4 * count <= steps[-1]]
-    one_call = {"Euler": steps, "multistep": steps[:-1]}
-    two_calls = {"Heun": twice, "midpoint": twice}
+    one_call: dict[str, Sequence[int]] = {"Euler": steps, "multistep": steps[:-1]}
+    two_calls: dict[str, Sequence[int]] = {"Heun": twice, "midpoint": twice}
     found = [Way(*how) for how in crossed(SCHEDULES, one_call) + crossed(["cubic"], two_calls)]
     for wish, reading in itertools.product(WISHES[:1] if quick else WISHES, READINGS):
-        counts = one_call if reading in TO_THE_END else {"Euler": steps[:-1]}
+        told = reading in TO_THE_END
+        counts: dict[str, Sequence[int]] = one_call if told else {"Euler": steps[:-1]}
         hows = crossed(["quadratic"], counts | (two_calls if reading == DEFAULT else {}))
         found += [Way(*how, *wish, *reading) for how in hows]
     return found
