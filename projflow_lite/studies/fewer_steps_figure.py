@@ -60,6 +60,7 @@ def draw_free(axes: Any, rows: list[dict[str, Any]], data: dict[str, Any]) -> No
     draw(axes[1], solvers, "bone error %", data, "No wish, cubic times: solvers")
     draw(axes[2], solvers, OFF_FLOW, data, "No wish, cubic times: off the flow")
     axes[2].set_yscale("log")
+    axes[2].set_ylim(2, 40)
     plain_ticks(axes[2], [1, 2, 5, 10, 20])
     axes[2].minorticks_off()
 
@@ -103,4 +104,6 @@ def draw(
     axes.set(xscale="log", title=title, xlabel="network calls", ylabel=score)
     axes.set_xticks([5, 10, 20, 50, 100], ["5", "10", "20", "50", "100"])
     axes.minorticks_off()
-    axes.legend(frameon=False, fontsize=8)
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, 0), high + 0.45 * (high - low))  # room for the legend
+    axes.legend(frameon=False, fontsize=8, loc="upper right", ncol=2)

@@ -126,7 +126,7 @@ def all_ways(quick: bool = False) -> list[Way]:
     """Everything that is measured; only Euler's steps are taken to the largest number.
 
     Without a wish: every spacing, with solvers of one call a step; those of two with cubic times.
-    With one: the spacing that `sample` takes.
+    With one: the spacing that `sample` takes; for two readings cubic times as well.
     """
     steps = QUICK_STEPS if quick else STEPS
     twice = [count for count in steps if 4 * count <= steps[-1]]
@@ -137,6 +137,8 @@ def all_ways(quick: bool = False) -> list[Way]:
         told = reading in TO_THE_END
         counts: dict[str, Sequence[int]] = one_call if told else {"Euler": steps[:-1]}
         hows = crossed(["quadratic"], counts | (two_calls if reading == DEFAULT else {}))
+        if reading in TO_THE_END:
+            hows += crossed(["cubic"], dict.fromkeys(one_call, twice))
         found += [Way(*how, *wish, *reading) for how in hows]
     return found
 
