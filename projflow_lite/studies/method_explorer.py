@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import time
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import ipywidgets as widgets
 import numpy as np
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from data_synth import held_out
 from projflow_lite.constraints import Wish, pin
 from projflow_lite.motion import Motion
+from projflow_lite.prior import Prior
 from projflow_lite.samplers import sample
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import bone_length_error, foot_skating, worst_acceleration
@@ -145,7 +146,8 @@ class MethodExplorer(widgets.VBox):
     def _model(self, rival: Rival) -> Velocity:
         """What a method samples from; a trained model is loaded when it is first chosen."""
         if rival.model not in self._models:
-            self._models[rival.model] = LOADERS[rival.model](self.prior)
+            own = cast(Prior, self.prior)  # of another kind it has no trained ways
+            self._models[rival.model] = LOADERS[rival.model](own)
         return self._models[rival.model]
 
     def _sample(self, prior: Velocity, rival: Rival) -> Motion:
