@@ -16,6 +16,7 @@ from places import BOOK, NOTEBOOKS, remove_others, write_if_new
 CHAPTERS = BOOK / "chapters"
 START = "from projflow_lite.widgets import static_page\n\nstatic_page.start()"
 FINISH = "static_page.finish()"
+FOR_TESTS = "# NBVAL_CHECK_OUTPUT\n"
 TITLE = re.compile(r"^# (?:\d+ · )?(.+)$", flags=re.MULTILINE)
 
 
@@ -41,7 +42,7 @@ def chapter(notebook: dict[str, Any], name: str) -> dict[str, Any]:
         if cell["cell_type"] == "markdown":  # ../book/page.md is ../page.md from a chapter
             cell["source"] = "".join(cell["source"]).replace("](../book/", "](../")
         if cell["cell_type"] == "code":
-            cell |= {"outputs": [], "execution_count": None}
+            cell |= {"outputs": [], "execution_count": None, "source": shown(cell["source"])}
     first = "".join(cells[0]["source"])
     cells[0]["source"] = TITLE.sub(lambda _: f"# {title_of(notebook, name)}", first, count=1)
     links = markdown(
@@ -51,6 +52,11 @@ def chapter(notebook: dict[str, Any], name: str) -> dict[str, Any]:
     # Sphinx takes the title from the first cell, so the hidden one comes after it.
     cells = [cells[0], hidden, *cells[1:], code(FINISH, "remove-input", "book-finish"), links]
     return notebook | {"cells": cells}
+
+
+def shown(source: str | list[str]) -> str:
+    """The code of a cell without the line that only the tests of the notebooks need."""
+    return "".join(source).removeprefix(FOR_TESTS)
 
 
 def links_of(notebook: dict[str, Any]) -> list[str]:

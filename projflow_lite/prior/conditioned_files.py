@@ -11,6 +11,8 @@ from importlib.resources import as_file, files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
+from safetensors import safe_open
+
 from projflow_lite.prior.checkpoint import description, load_prior, pack, read, unpack, write
 from projflow_lite.prior.conditioned import ControlledPrior, MaskedPrior
 from projflow_lite.prior.model import Prior
@@ -101,6 +103,24 @@ def load_control_branch(
             f"load_control_branch: {path} does not fit its own description: {reason}"
         ) from error
     return model
+
+
+def shipped_start(name: str) -> str | None:
+    """Which prior a file of the package was made from, without loading its weights.
+
+    Args:
+        name: "masked" or "control_branch".
+
+    Returns:
+        the fingerprint of that prior's weights; None if the package has no such file.
+    """
+    kind = {"masked": "masked prior", "control_branch": "control branch"}[name]
+    try:
+        file = shipped(name, "shipped_start")
+    except FileNotFoundError:
+        return None
+    with as_file(file) as path, safe_open(path, framework="pt") as opened:
+        return str(json.loads((opened.metadata() or {}).get(kind, "{}")).get("start", ""))
 
 
 def shipped(name: str, who: str) -> Traversable:

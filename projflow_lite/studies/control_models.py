@@ -10,7 +10,11 @@ from typing import NamedTuple
 
 from projflow_lite.prior import Prior
 from projflow_lite.prior.conditioned import ConditionedPrior
-from projflow_lite.prior.conditioned_files import load_control_branch, load_masked_prior
+from projflow_lite.prior.conditioned_files import (
+    load_control_branch,
+    load_masked_prior,
+    shipped_start,
+)
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.studies.cells import Rival, fingerprint
 from projflow_lite.studies.control_ways import elsewhere
@@ -83,6 +87,17 @@ def found(name: str, prior: Prior, own: str, models: Models | None) -> Condition
             return ELSEWHERE
         raise
     return model if model.start == own else ELSEWHERE
+
+
+def absent_of(prior: Velocity, rivals: Sequence[Rival]) -> dict[tuple[str, str], str]:
+    """Why shipped models are of no use with a prior, by rival and model; nothing is loaded."""
+    own = fingerprint(prior) if isinstance(prior, Prior) else ""
+    absent = {}
+    for rival in rivals:
+        start = shipped_start(rival.model) if rival.model else own
+        if start != own:
+            absent[rival.name, rival.model] = MISSING if start is None else ELSEWHERE
+    return absent
 
 
 def said_of(absent: Mapping[tuple[str, str], str]) -> str | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import time
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import ipywidgets as widgets
 import numpy as np
@@ -13,16 +13,24 @@ from numpy.typing import NDArray
 from data_synth import held_out
 from projflow_lite.constraints import Wish, pin
 from projflow_lite.motion import Motion
+from projflow_lite.prior import Prior
 from projflow_lite.samplers import sample
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import bone_length_error, foot_skating, worst_acceleration
-from projflow_lite.studies.control_ways import RIVALS, Rival
+from projflow_lite.skeleton import CONTROLLED
+from projflow_lite.studies.cells import Rival
+from projflow_lite.studies.control_models import LOADERS, absent_of, said_of
+from projflow_lite.studies.control_ways import RIVALS, TRAINED
 from projflow_lite.widgets import Viewer
+from projflow_lite.widgets.answering import status_line
 
 SEARCH = {"iterations": 20, "solver_steps": 8}
 """The search for noise, short enough to wait for."""
 
-WAYS = {rival.name: rival for rival in RIVALS}
+MOVING = Rival("projflow, moving metric", "projflow", (("metric", "moving"),))
+WAYS = {rival.name: rival for rival in (*RIVALS[:2], MOVING, *RIVALS[2:], *TRAINED)}
+"""Those that need no training, ProjFlow with a metric over time, and the trained ones, by name."""
+
 COUNTS = (1, 2, 3, 5, 10, 30)
 COLUMNS = ("misses by, cm", "worst acc., m/s²", "bones change, %", "feet slide, %", "seconds")
 
@@ -38,7 +46,9 @@ class MethodExplorer(widgets.VBox):
     """Keyframes of one joint of a held-out clip, met by any of the methods.
 
     The solid body is what the method makes, the thin one the clip that the keyframes are from. All
-    methods begin with the same noise. The table keeps a line for every method that was tried.
+    methods begin with the same noise. The table keeps a line for every method that was tried. A
+    trained method whose model is not in the package, or is of another prior, is left out, and a
+    sentence says so.
 
     Args:
         prior: what to sample from.
@@ -49,7 +59,7 @@ class MethodExplorer(widgets.VBox):
     Raises:
         ValueError: if no held-out caption has the words of the prompt.
 
-    ``.outcomes`` are the methods tried, by name, for the present wish.
+    ``.outcomes`` are the methods tried, by name, for the present wish, ``.ways`` all that can be.
     """
 
     def __init__(
@@ -65,15 +75,19 @@ class MethodExplorer(widgets.VBox):
             raise ValueError(f"MethodExplorer: no held-out clip is called '{prompt}'")
         self.prior, self.frames, self.batch = prior, frames, batch
         self.clip = Motion(clips.positions[places[0]].astype(float), clips.captions[places[0]])
+        absent = absent_of(prior, TRAINED)
+        left_out = {name for name, _ in absent}
+        self.ways = {name: rival for name, rival in WAYS.items() if name not in left_out}
+        self._models: dict[str, Velocity] = {"": prior}
         self._tried: dict[tuple[str, int], dict[str, Outcome]] = {}
         slim = {"description_width": "80px"}
         self.method = widgets.Dropdown(
-            options=list(WAYS), value="projflow", description="method", style=slim,
+            options=list(self.ways), value="projflow", description="method", style=slim,
             layout={"width": "240px"},
         )  # fmt: skip
         self.joint = widgets.Dropdown(
-            options=["pelvis", "left_wrist", "right_wrist", "left_foot", "right_foot", "head"],
-            value="left_wrist", description="joint", style=slim, layout={"width": "220px"},
+            options=CONTROLLED, value="left_wrist", description="joint", style=slim,
+            layout={"width": "220px"},
         )  # fmt: skip
         self.count = widgets.SelectionSlider(
             options=COUNTS, value=5, description="keyframes",
@@ -82,10 +96,12 @@ class MethodExplorer(widgets.VBox):
         )  # fmt: skip
         self.viewer = Viewer(height=380, trail=self.joint.value, layout={"flex": "1 1 330px"})
         self.table = widgets.HTML(layout={"flex": "1 1 380px"})
+        self.left_out = widgets.HTML(status_line(said_of(absent) or ""))
         wrap = {"flex_flow": "row wrap", "width": "100%", "grid_gap": "4px 12px"}
         super().__init__([
             widgets.Box([self.method, self.joint, self.count], layout=wrap),
             widgets.Box([self.viewer, self.table], layout=wrap),
+            *([self.left_out] if absent else []),
         ])  # fmt: skip
         for control in (self.joint, self.count):
             control.observe(self._new_wish, "value")
@@ -113,8 +129,9 @@ class MethodExplorer(widgets.VBox):
     def try_method(self, name: str) -> Outcome:
         """What a method makes of the present wish; made once."""
         if name not in self.outcomes:
+            prior = self._model(self.ways[name])
             start = time.perf_counter()
-            motion = self._sample(WAYS[name])
+            motion = self._sample(prior, self.ways[name])
             self.outcomes[name] = Outcome(
                 motion, self._numbers(motion, time.perf_counter() - start)
             )
@@ -122,17 +139,24 @@ class MethodExplorer(widgets.VBox):
 
     def try_all(self) -> None:
         """Try every method, and show the table."""
-        for name in WAYS:
+        for name in self.ways:
             self.try_method(name)
         self._show()
 
-    def _sample(self, rival: Rival) -> Motion:
+    def _model(self, rival: Rival) -> Velocity:
+        """What a method samples from; a trained model is loaded when it is first chosen."""
+        if rival.model not in self._models:
+            own = cast(Prior, self.prior)  # of another kind it has no trained ways
+            self._models[rival.model] = LOADERS[rival.model](own)
+        return self._models[rival.model]
+
+    def _sample(self, prior: Velocity, rival: Rival) -> Motion:
         common: dict[str, Any] = {"prompt": self.clip.prompt, "frames": self.frames}
         common |= {"batch": self.batch}
         if not rival.method:
-            return sample(self.prior, None, **common)
+            return sample(prior, None, **common)
         options = dict(rival.options) | (SEARCH if rival.method == "dno" else {})
-        return sample(self.prior, self.wish, method=rival.method, **common, **options)
+        return sample(prior, self.wish, method=rival.method, **common, **options)
 
     def _numbers(self, motion: Motion, seconds: float) -> tuple[float, ...]:
         at = self.keyframes

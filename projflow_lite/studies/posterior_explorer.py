@@ -61,7 +61,7 @@ class PosteriorExplorer(widgets.VBox):
             height=HEIGHT, equal=False, layout=widgets.Layout(width="255px", min_width="200px"),
         )  # fmt: skip
         self.noise = self._choice("noise", NOISES, "250px")
-        self.eta = self._choice("η, fresh", SHARES, "200px")
+        self.eta = self._choice("η, fresh", SHARES, "240px")
         self.metric = self._choice("metric", SHAPES, "240px")
         self.steps = widgets.Dropdown(
             options=[5, 10, 20, 50], value=20, description="steps",

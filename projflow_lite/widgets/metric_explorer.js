@@ -158,7 +158,7 @@ class ExplorerView {
       const worst = worstBone(bodies[i].stretch);
       const result = Math.abs(worst.stretch) < 0.0005 ? "no bone changes"
         : `worst bone ${percent(worst.stretch)} (${boneName(names, worst.joint)})`;
-      ui.captions[i].replaceChildren(element("b", {}, title), element("span", {}, formula ? ` ${formula}` : ""), element("br"), result);
+      ui.captions[i].replaceChildren(element("b", {}, title), " ", element("span", {}, formula ?? ""), element("br"), result);
       ui.captions[i].dataset.worst = worst.stretch;
       ui.table.heads[i].textContent = ["Euclid", "kin.", "own"][i];
       ui.table.heads[i].title = title;

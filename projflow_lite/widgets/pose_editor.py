@@ -26,9 +26,10 @@ SETTLE = 0.01  # seconds: a hand that drags is followed, and need not come to re
 class PoseEditor(widgets.VBox):
     """A motion whose joints can be grabbed. What was dragged stays where it was put, exactly.
 
-    While the hand moves, a few steps of the sampler answer; once it lets go, all of them do. The
-    noise stays the same, so that only the pins change the motion. Without a mouse: choose the joint
-    and the frame, and write its place.
+    While the hand moves, a few steps of the sampler answer, and one message to the page; once it
+    lets go, all of them do, and the line of words and the written place follow. The noise stays the
+    same, so that only the pins change the motion. Without a mouse: choose the joint and the frame,
+    and write its place.
 
     Args:
         prior: what to sample from, see `sample`.
@@ -113,7 +114,10 @@ class PoseEditor(widgets.VBox):
             return
         self._pin(pull["joint"], pull["frame"], pull["at"])
         self.joint.value = pull["joint"]
-        self._soon(self.steps if pull["done"] else self.drag_steps)
+        if pull["done"]:
+            self._soon(self.steps)
+        else:
+            self._soon(self.drag_steps, wordless=True)
 
     def _written(self, change: dict[str, Any]) -> None:
         """A coordinate was written."""
@@ -133,13 +137,19 @@ class PoseEditor(widgets.VBox):
             del self.pins[key]
         self._soon(self.steps)
 
-    def _soon(self, steps: int | Sequence[float]) -> None:
+    def _soon(self, steps: int | Sequence[float], wordless: bool = False) -> None:
         """Run once things have settled: what was dragged while we were busy makes one motion."""
-        self._later.call(self.run, steps)
+        self._later.call(self.run, steps, wordless)
 
-    def run(self, steps: int | Sequence[float] | None = None) -> None:
-        """Make the motion anew, and show it or say what is wrong."""
-        start = time.perf_counter()
+    def run(self, steps: int | Sequence[float] | None = None, wordless: bool = False) -> None:
+        """Make the motion anew, and show it or say what is wrong.
+
+        Args:
+            steps: of the sampler; None for all of them.
+            wordless: send the picture alone, in one message, unless there is an error to say or to
+                take back: the words would be old before they are read.
+        """
+        start, wordless = time.perf_counter(), wordless and self.error is None
         try:
             self.motion, self.error = self._sample(steps or self.steps), None
         except Exception as error:  # anything at all: a traceback would vanish in a log
@@ -148,6 +158,8 @@ class PoseEditor(widgets.VBox):
             return
         self.runs += 1
         self.viewer.show(self.motion)
+        if wordless:
+            return
         self._show_place()
         seconds = time.perf_counter() - start
         count = f"{len(self.pins)} pin{'s' * (len(self.pins) != 1)}"

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 import torch
 
-from projflow_lite.studies.method_explorer import WAYS, MethodExplorer
+import projflow_lite as pf
+from projflow_lite.prior import conditioned_files
+from projflow_lite.skeleton import CONTROLLED
+from projflow_lite.studies.control_ways import TRAINED
+from projflow_lite.studies.method_explorer import MOVING, WAYS, MethodExplorer
 from projflow_lite.widgets.recording import family, record
 
 
@@ -26,14 +30,16 @@ def explorer():
 
 
 def test_every_method_has_its_line(explorer):
-    assert list(explorer.outcomes) == ["projflow", *(name for name in WAYS if name != "projflow")]
-    assert explorer.table.value.count("<tr") == 1 + len(WAYS)
+    trained = {rival.name for rival in TRAINED}
+    free = [name for name in WAYS if name not in trained]
+    assert list(explorer.outcomes) == ["projflow", *(name for name in free if name != "projflow")]
+    assert explorer.table.value.count("<tr") == 1 + len(free)
     assert "font-weight: bold" in explorer.table.value
 
 
 def test_the_exact_methods_are_exact_and_no_wish_misses(explorer):
     missed = {name: outcome.numbers[0] for name, outcome in explorer.outcomes.items()}
-    for name in ("projflow", "ddnm", "replacement", "imputation"):
+    for name in ("projflow", MOVING.name, "ddnm", "replacement", "imputation"):
         assert missed[name] < 1e-3, name
     assert missed["no wish"] > 10
 
@@ -65,6 +71,33 @@ def test_another_wish_begins_anew():
     assert list(explorer.outcomes) == ["ddnm"]
     assert explorer.viewer.trail == [15]
     assert explorer.viewer.motion.residual < 1e-6
+
+
+def test_a_trained_method_is_left_out_with_a_sentence(explorer):
+    assert set(WAYS) - set(explorer.method.options) == {rival.name for rival in TRAINED}
+    assert "another prior" in explorer.left_out.value
+    assert explorer.left_out in explorer.children
+
+
+def test_the_control_branch_is_loaded_when_it_is_chosen():
+    prior = pf.load_prior()
+    explorer = MethodExplorer(prior, frames=24, batch=1)
+    assert explorer.joint.options == CONTROLLED
+    assert list(explorer._models) == [""]
+    explorer.method.value = "control branch"
+    assert list(explorer._models) == ["", "control_branch"]
+    missed = explorer.outcomes["control branch"].numbers[0]
+    assert missed < explorer.try_method("no wish").numbers[0]
+
+
+def test_a_model_that_the_package_does_not_have_is_named(monkeypatch):
+    def gone(name, who):
+        raise FileNotFoundError
+
+    monkeypatch.setattr(conditioned_files, "shipped", gone)
+    explorer = MethodExplorer(pf.load_prior(), frames=24, batch=1)
+    assert "control branch" not in explorer.ways
+    assert "control branch, whose model is not in the package" in explorer.left_out.value
 
 
 def test_a_page_without_python_can_play_every_control_back():

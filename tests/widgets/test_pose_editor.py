@@ -53,6 +53,49 @@ def test_a_drag_takes_few_steps_and_letting_go_all_of_them(editor, monkeypatch):
     assert asked == [2, 4]
 
 
+def messages_of(editor):
+    """A list that grows by the sender and what it says with every message to the page."""
+    said = []
+
+    class Wire:
+        kernel, comm_id = True, "wire"
+
+        def __init__(self, widget):
+            self.widget = widget
+
+        def on_msg(self, callback): ...
+
+        def close(self, *_, **__): ...
+
+        def send(self, data=None, buffers=None):
+            said.append((self.widget, set(data["state"])))
+
+    for widget in (editor.viewer, editor.joint, *editor.place, editor.status):
+        widget.comm = Wire(widget)
+    return said
+
+
+def test_while_the_hand_moves_an_answer_is_one_message(editor):
+    pull(editor, WRIST, 7, [0.1, 1.0, 0.0], done=False)
+    said = messages_of(editor)
+    for x in (0.2, 0.3):
+        editor.viewer.set_state(  # as the page says it
+            {"pull": {"joint": WRIST, "frame": 7, "at": [x, 1, 0], "done": False, "count": x}}
+        )
+    assert [widget for widget, _ in said] == [editor.viewer] * 2
+    pull(editor, WRIST, 7, [0.3, 1.2, 0.0], done=True)
+    assert editor.status in [widget for widget, _ in said]
+    assert "1 pin " in editor.status.value
+
+
+def test_what_was_wrong_is_taken_back_while_the_hand_moves():
+    editor = PoseEditor(still, frames=24, wish=pf.pin("pelvis", 0, [0, 0.9, 0]), steps=3)
+    pull(editor, 0, 0, [0.5, 1.0, 0.0], done=False)
+    assert "pf-bad" in editor.status.value
+    pull(editor, 0, 0, [0.0, 0.9, 0.0], done=False)
+    assert "pf-bad" not in editor.status.value
+
+
 def test_undo_takes_the_last_pin_and_clear_all(editor):
     free = editor.motion.positions
     for joint in (WRIST, HEAD, 0):
