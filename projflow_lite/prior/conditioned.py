@@ -5,14 +5,14 @@ network gets 132 numbers a frame, 66 values (0 where unknown) and 66 marks that 
 are known; `marked` makes them. One layer, the *hint*, adds them to what the network makes of the
 noisy motion at its door. The values are not places but distances: how far the prediction of a
 network that is told nothing is from what is known (`miss_of`). What to do about a distance is
-learned in minutes. What to do about a place is not: shown places, the masked prior learned in 3000
-steps to ignore them. So the network is asked twice, and a step costs the way in and out twice.
+learned in minutes, what to do about a place is not. For that the network is asked twice: a step
+costs the way in and the way out twice.
 
 There are two ways to go on from the prior.
 
 * `MaskedPrior`, as CondMDI: all weights are trained further. Known coordinates of the state lose
-  their noise, and a hint is added. It begins at zero: that is as if the first layer had got 132
-  more inputs with weights of zero. (CondMDI itself shows places.)
+  their noise, and a hint is added, as if the first layer had got 132 more inputs. (CondMDI itself
+  shows places.)
 * `ControlledPrior`, a ControlNet: the prior's weights stay as they are. A *branch*, a copy of the
   inward half of its U-Net, gets the hint and is trained; what it sees is added to what the prior
   sees, through two layers that begin at zero.
@@ -72,8 +72,14 @@ def zeroed(layer: nn.Conv1d) -> nn.Conv1d:
 
 
 def hint_layer(width: int) -> nn.Conv1d:
-    """From 132 channels to features at half frame rate; it says nothing where nothing is known."""
-    return nn.Conv1d(2 * CHANNELS, width, 4, 2, 1, bias=False)
+    """From 132 channels to features at half frame rate; it says nothing where nothing is known.
+
+    It begins with random weights, loud enough to be read by all that learns behind it. Those of a
+    masked prior that began at zero, shown places, were ignored after 3000 steps as before.
+    """
+    layer = nn.Conv1d(2 * CHANNELS, width, 4, 2, 1, bias=False)
+    nn.init.normal_(layer.weight, std=0.1)
+    return layer
 
 
 class MaskedNetwork(Network):
@@ -81,7 +87,7 @@ class MaskedNetwork(Network):
 
     def __init__(self, words: int, *sizes: Any, **named: Any) -> None:
         super().__init__(words, *sizes, **named)
-        self.hint = zeroed(hint_layer(self.enter.out_channels))
+        self.hint = hint_layer(self.enter.out_channels)
 
     def forward(
         self,
@@ -128,7 +134,6 @@ class Branch(Inward):
             setattr(self, name, deepcopy(getattr(network, name)))
         a, b = self.enter.out_channels, self.to_quarter.out_channels
         self.hint = hint_layer(a)
-        nn.init.normal_(self.hint.weight, std=0.1)
         self.join_half = zeroed(nn.Conv1d(a, a, 1))
         self.join_quarter = zeroed(nn.Conv1d(b, b, 1))
 
