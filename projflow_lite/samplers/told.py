@@ -1,9 +1,9 @@
 r"""Following a flow that is told what is known: the loop of `control_branch` and `condmdi`.
 
-.. math:: \hat x_1 = x_t + (1 - t)\, v_\theta(x_t, t, \text{text}, y), \qquad
-          x_{t'} = x_t + \frac{t' - t}{1 - t} (\tilde x_1 - x_t)
+.. math:: v = v_\theta(x_t, t, \text{text}, y), \qquad \hat x_1 = x_t + (1 - t)\, v, \qquad
+          x_{t'} = x_t + (t' - t) \Bigl(v + \frac{\tilde x_1 - \hat x_1}{1 - t}\Bigr)
 
-With :math:`\tilde x_1 = \hat x_1` it is Euler's.
+The flow goes towards :math:`\tilde x_1`. If that is :math:`\hat x_1`, the loop is Euler's.
 """
 
 from __future__ import annotations
@@ -47,9 +47,10 @@ def follow(
     """
     x_t = x0
     for t, t_next in itertools.pairwise(times):
-        x1_hat = x_t + (1 - t) * velocity(x_t, t, text, observed)
+        v = velocity(x_t, t, text, observed)
+        x1_hat = x_t + (1 - t) * v
         x1 = changed(t, x1_hat)
         if callback:
             callback(Step(t, t_next, x_t, x1_hat, x1))
-        x_t = x_t + (t_next - t) / (1 - t) * (x1 - x_t)
+        x_t = x_t + (t_next - t) * (v + (x1 - x1_hat) / (1 - t))
     return x_t
