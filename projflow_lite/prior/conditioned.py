@@ -3,16 +3,19 @@ r"""Two priors that were taught to see keyframes: the trained rivals of zero-sho
 What is known of a motion is one tensor, `observed`: metres, and NaN where nothing is known. The
 network gets 132 numbers a frame, 66 values (0 where unknown) and 66 marks that say which of them
 are known; `marked` makes them. One layer, the *hint*, adds them to what the network makes of the
-noisy motion at its door. There are two ways to go on from the prior.
+noisy motion at its door. The values are not places but distances: how far the prediction of a
+network that is told nothing is from what is known (`miss_of`). What to do about a distance is
+learned in minutes, what to do about a place is not. For that the network is asked twice: a step
+costs the way in and the way out twice.
+
+There are two ways to go on from the prior.
 
 * `MaskedPrior`, as CondMDI: all weights are trained further. Known coordinates of the state lose
-  their noise, and a hint of the values themselves is added. It begins at zero: that is as if the
-  first layer had got 132 more inputs with weights of zero.
+  their noise, and a hint is added, as if the first layer had got 132 more inputs. (CondMDI itself
+  shows places.)
 * `ControlledPrior`, a ControlNet: the prior's weights stay as they are. A *branch*, a copy of the
   inward half of its U-Net, gets the hint and is trained; what it sees is added to what the prior
-  sees, through two layers that begin at zero. Its values are how far the prior's own prediction is
-  from what is known: what to do about a distance is learned in minutes, what to do about a place
-  is not. For that the prior is asked first, so a step costs the way in and the way out twice.
+  sees, through two layers that begin at zero.
 
 Both learn :math:`E[x_1 \mid x_t, \text{text}, \text{observed}]`, in which known coordinates are as
 observed, exactly. A trained network comes near to that, no more; ProjFlow's projection needs no
@@ -30,6 +33,7 @@ from typing import Any, Self
 
 import torch
 from torch import nn
+from torch.func import functional_call
 from torch.nn import functional
 
 from projflow_lite.prior.checkpoint import fingerprint
@@ -52,6 +56,14 @@ def marked(values: torch.Tensor) -> torch.Tensor:
     return functional.pad(both.mT, (0, -values.shape[1] % 4))
 
 
+def miss_of(observed: torch.Tensor, plain: torch.Tensor, t: torch.Tensor) -> torch.Tensor:
+    """How far a prediction is from what is known, NaN where nothing is.
+
+    Over about what predictions miss at this time: so it has one scale.
+    """
+    return (observed - plain) / (1.05 - t).view(-1, 1, 1, 1)
+
+
 def zeroed(layer: nn.Conv1d) -> nn.Conv1d:
     """The layer with all weights 0: it learns, but until then it says nothing."""
     for weight in layer.parameters():
@@ -60,8 +72,14 @@ def zeroed(layer: nn.Conv1d) -> nn.Conv1d:
 
 
 def hint_layer(width: int) -> nn.Conv1d:
-    """From 132 channels to features at half frame rate; it says nothing where nothing is known."""
-    return nn.Conv1d(2 * CHANNELS, width, 4, 2, 1, bias=False)
+    """From 132 channels to features at half frame rate; it says nothing where nothing is known.
+
+    It begins with random weights, loud enough to be read by all that learns behind it. Those of a
+    masked prior that began at zero, shown places, were ignored after 3000 steps as before.
+    """
+    layer = nn.Conv1d(2 * CHANNELS, width, 4, 2, 1, bias=False)
+    nn.init.normal_(layer.weight, std=0.1)
+    return layer
 
 
 class MaskedNetwork(Network):
@@ -69,7 +87,7 @@ class MaskedNetwork(Network):
 
     def __init__(self, words: int, *sizes: Any, **named: Any) -> None:
         super().__init__(words, *sizes, **named)
-        self.hint = zeroed(hint_layer(self.enter.out_channels))
+        self.hint = hint_layer(self.enter.out_channels)
 
     def forward(
         self,
@@ -87,14 +105,20 @@ class MaskedNetwork(Network):
             observed: ``(batch, frames, 22, 3)`` clean motion, centred and scaled, NaN where nothing
                 is known; None knows nothing.
         """
-        condition, hint = self.told(t, ids), None
-        if observed is not None:
-            with torch.autocast(x.device.type, enabled=False):
-                hint = self.hint(marked(observed))
-            x = torch.where(observed.isnan(), x, t.view(-1, 1, 1, 1) * observed)  # without noise
-        seen = self.look(x)
+        if observed is None:
+            return super().forward(x, t, ids)
+        with torch.autocast(x.device.type, enabled=False):
+            hint = self.hint(marked(miss_of(observed, self.untold(x, t, ids), t)))
+        x = torch.where(observed.isnan(), x, t.view(-1, 1, 1, 1) * observed)  # without noise
+        seen, condition = self.look(x), self.told(t, ids)
         half, quarter = self.inward(seen, condition, hint)
         return self.outward(half, quarter, seen, condition, t, x.shape[1])
+
+    def untold(self, x: torch.Tensor, t: torch.Tensor, ids: torch.Tensor) -> torch.Tensor:
+        """What it predicts when told nothing. Training learns nothing from this first look."""
+        fixed = {name: weight.detach() for name, weight in self.named_parameters()}
+        plain: torch.Tensor = functional_call(self, fixed, (x, t, ids))
+        return plain
 
 
 class Branch(Inward):
@@ -110,7 +134,6 @@ class Branch(Inward):
             setattr(self, name, deepcopy(getattr(network, name)))
         a, b = self.enter.out_channels, self.to_quarter.out_channels
         self.hint = hint_layer(a)
-        nn.init.normal_(self.hint.weight, std=0.1)
         self.join_half = zeroed(nn.Conv1d(a, a, 1))
         self.join_quarter = zeroed(nn.Conv1d(b, b, 1))
 
@@ -149,8 +172,7 @@ class ControlledNetwork(Network):
         miss = None
         if observed is not None:
             plain = self.outward(half, quarter, seen, condition, t, x.shape[1])
-            # Over about what predictions miss at this time, so that the branch sees one scale.
-            miss = (observed - plain) / (1.05 - t).view(-1, 1, 1, 1)
+            miss = miss_of(observed, plain, t)
         more_half, more_quarter = self.branch(seen, condition, miss)
         half, quarter = half + more_half, quarter + more_quarter
         return self.outward(half, quarter, seen, condition, t, x.shape[1])

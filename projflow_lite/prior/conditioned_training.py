@@ -133,6 +133,6 @@ class ConditionedTrainer(Trainer):
 
 RECIPES: dict[str, Recipe] = {
     "control_branch": ConditionedRecipe(2500, learning_rate=1e-3, bfloat16=True, branch=True),
-    "masked": ConditionedRecipe(3000, learning_rate=4e-4, bfloat16=True),
+    "masked": ConditionedRecipe(1700, learning_rate=5e-4, restart=1300, ema=0.998, bfloat16=True),
 }
 """The trained rivals of zero-shot control."""

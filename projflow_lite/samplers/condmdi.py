@@ -1,24 +1,22 @@
 r"""CondMDI: a network that was trained to see keyframes, and if one likes, imputation on top.
 
-The loop is that of `control_branch`. Until a chosen time what is known also overwrites the
-predicted motion, as in `imputation`, but here the network has been told and has made it fit:
+The loop is that of `control_branch`, see `told`. Until a chosen time what is known also overwrites
+the predicted motion, as in `imputation`, but here the network has been told and has made it fit:
 
-.. math:: \tilde x_1 = (1 - M) \odot \hat x_1 + M \odot y, \qquad
-          x_{t'} = x_t + \frac{t' - t}{1 - t} (\tilde x_1 - x_t)
+.. math:: \tilde x_1 = (1 - M) \odot \hat x_1 + M \odot y
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 
 import torch
 
 from projflow_lite.prior.model import Text
-from projflow_lite.samplers.control_branch import Told
 from projflow_lite.samplers.gmd_imputation import Imputation
 from projflow_lite.samplers.options import check_callback, check_number
 from projflow_lite.samplers.projflow import Step
+from projflow_lite.samplers.told import Told, follow
 
 
 def condmdi(
@@ -54,12 +52,10 @@ def condmdi(
     """
     check_number("condmdi", "until", until, 1)
     check_callback("condmdi", callback)
-    observed, x_t = known.observed, x0
-    for t, t_next in itertools.pairwise(times):
-        x1_hat = x_t + (1 - t) * velocity(x_t, t, text, observed)
-        x1 = known(x1_hat) if t < until else x1_hat
-        if callback:
-            callback(Step(t, t_next, x_t, x1_hat, x1))
-        x_t = x_t + (t_next - t) / (1 - t) * (x1 - x_t)
-    # With the last step x_t is x1 but for rounding.
-    return known(x_t) if until == 1 else x_t
+
+    def overwritten(t: float, x1_hat: torch.Tensor) -> torch.Tensor:
+        return known(x1_hat) if t < until else x1_hat
+
+    x1 = follow(velocity, known.observed, x0, times, text, callback, overwritten)
+    # The last step ends at the overwritten motion but for rounding.
+    return known(x1) if until == 1 else x1

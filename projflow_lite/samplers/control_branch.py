@@ -2,13 +2,12 @@ r"""Control by a trained branch: tell the network what is known, follow the flow
 
 .. math:: x_{t'} = x_t + (t' - t)\, v_\theta(x_t, t, \text{text}, y)
 
-The loop is plain Euler's: all that is known of control is in the network. It was trained to come
-near the keyframes, and nothing checks that it does. Each step asks the branch too.
+The loop is plain Euler's, see `told`: all that is known of control is in the network. It was
+trained to come near the keyframes, and nothing checks that it does. Each step asks the branch too.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 
 import torch
@@ -17,9 +16,7 @@ from projflow_lite.prior.model import Text
 from projflow_lite.samplers.gmd_imputation import Imputation
 from projflow_lite.samplers.options import check_callback
 from projflow_lite.samplers.projflow import Step
-
-Told = Callable[[torch.Tensor, float, Text, torch.Tensor], torch.Tensor]
-"""A velocity that is told what is known: ``velocity(x_t, t, text, observed)``."""
+from projflow_lite.samplers.told import Told, follow
 
 
 def control_branch(
@@ -49,11 +46,4 @@ def control_branch(
     CtrlNet.
     """
     check_callback("control_branch", callback)
-    observed, x_t = known.observed, x0
-    for t, t_next in itertools.pairwise(times):
-        v = velocity(x_t, t, text, observed)
-        if callback:
-            x1_hat = x_t + (1 - t) * v
-            callback(Step(t, t_next, x_t, x1_hat, x1_hat))
-        x_t = x_t + (t_next - t) * v
-    return x_t
+    return follow(velocity, known.observed, x0, times, text, callback)

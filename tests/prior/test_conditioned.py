@@ -7,7 +7,13 @@ import torch
 import projflow_lite as pf
 from data_synth import make_clips
 from data_synth.captions import phrases
-from projflow_lite.prior import Prior, conditioned_training, load_prior, save_prior
+from projflow_lite.prior import (
+    Prior,
+    conditioned,
+    conditioned_training,
+    load_prior,
+    save_prior,
+)
 from projflow_lite.prior.checkpoint import read, write
 from projflow_lite.prior.conditioned import LOUD, ControlledPrior, MaskedPrior, marked
 from projflow_lite.prior.conditioned_files import (
@@ -83,26 +89,47 @@ def test_a_branch_says_nothing_before_training_whatever_it_is_shown():
 
 
 def test_an_untrained_masked_prior_sees_known_coordinates_without_their_noise():
-    """The plain prior on a state in which they are t y, and all else as it was."""
+    """Without a hint, the plain prior on a state in which they are t y, and all else as it was."""
     prior, x = fresh_prior(), states()
     observed, t = keyframes(states(seed=3)), 0.4
     state = torch.where(observed.isnan(), x, t * observed)
-    ours = MaskedPrior.of(prior).endpoint(x, t, "a person walks", observed)
+    model = MaskedPrior.of(prior)
+    torch.nn.init.zeros_(model.network.hint.weight)
+    ours = model.endpoint(x, t, "a person walks", observed)
     torch.testing.assert_close(ours, prior.endpoint(state, t, "a person walks"))
     assert (ours - prior.endpoint(x, t, "a person walks")).abs().max() > 1e-3
 
 
-def test_a_branch_is_told_how_far_the_prior_is_from_what_is_known():
-    """Spied on; the miss of the frozen prior's endpoint, over 1.05 - t and the scale."""
+@pytest.mark.parametrize("kind", KINDS, ids=NAMES)
+def test_it_is_told_how_far_it_is_from_what_is_known_when_told_nothing(kind, monkeypatch):
+    """Spied on; the miss of that endpoint, over 1.05 - t and the scale."""
     prior, x = fresh_prior(), states()
-    model, told = scrambled(ControlledPrior.of(prior)), []
-    model.network.branch.forward = lambda seen, condition, miss: (told.append(miss), (0.0, 0.0))[1]
+    model, told = scrambled(kind.of(prior)), []
+
+    def spy(values):
+        told.append(values)
+        return marked(values)
+
+    monkeypatch.setattr(conditioned, "marked", spy)
     observed, t = keyframes(states(seed=3)), 0.6
     model.endpoint(x, t, "a person walks", observed)
-    miss = observed - prior.endpoint(x, t, "a person walks")
+    # A branch is not asked: its prior is frozen, and predicts as it did before.
+    untold = prior if kind is ControlledPrior else model
+    miss = observed - untold.endpoint(x, t, "a person walks")
     torch.testing.assert_close(
         told[0], miss / prior.noise_std / (1.05 - t), equal_nan=True, atol=1e-4, rtol=1e-4
     )
+
+
+def test_the_first_look_teaches_a_masked_prior_nothing_but_can_be_differentiated():
+    network, x = MaskedPrior.of(fresh_prior()).network, states(1, 20).requires_grad_(True)
+    t, ids = torch.tensor([0.6]), torch.zeros(1, 4, dtype=torch.long)
+    (expected,) = torch.autograd.grad(network(x, t, ids).square().sum(), x)
+    network.requires_grad_(True)
+    network.untold(x, t, ids).square().sum().backward()
+    torch.testing.assert_close(x.grad, expected)
+    assert expected.abs().max() > 0.1
+    assert all(weight.grad is None for weight in network.parameters())
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=NAMES)
