@@ -68,7 +68,7 @@ def projflow(
             "implied", what the state and the velocity say it was, :math:`x_t - t v`. Implied is
             the default because it measured better: with 1, 5 and 15 keyframes on the pelvis or the
             left wrist, at guidance 1 and 2 and 25 steps, the kinetic distance is lower in all
-            twelve cases (5 pelvis keyframes: 6.8 against 8.3), the bone error in eleven and the
+            twelve cases (5 pelvis keyframes: 6.5 against 8.3), the bone error in eleven and the
             worst acceleration in ten, with 95 % intervals of the difference that exclude 0; FID
             does not tell them apart. With every frame pinned they are alike. See
             ``projflow-lite reproduce ablations`` and book/results/ablations.json.
