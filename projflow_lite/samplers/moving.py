@@ -38,8 +38,10 @@ class MovingMetric:
     so may the walk.
 
     Attributes:
-        start, speed, memory: of the walk, metres, metres a second and seconds; see
+        start: standard deviation of the walk's first place, metres; for this and the next two see
             `projflow_lite.equations.walk_covariance`.
+        speed: standard deviation of its velocity, metres a second.
+        memory: how long it keeps a velocity, seconds.
         until: flow time after which the metric stays as it is. At 1 it would end as one without
             time, and the last steps would pull single frames out of line.
         noise_std: of the flow's noise, metres.

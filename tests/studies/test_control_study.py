@@ -218,7 +218,7 @@ def test_the_table_shows_the_papers_numbers_and_says_something(measured, tmp_pat
 
 
 def test_too_few_clips_or_seeds_are_refused(prior):
-    with pytest.raises(ValueError, match="at least 32 clips and 2 seeds, not 31 and 4"):
+    with pytest.raises(ValueError, match="at least 32 clips and 2 seeds, not 31 and 3"):
         control.run(prior, Protocol(clips=31))
 
 
