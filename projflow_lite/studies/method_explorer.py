@@ -20,14 +20,14 @@ from projflow_lite.scores import bone_length_error, foot_skating, worst_accelera
 from projflow_lite.skeleton import CONTROLLED
 from projflow_lite.studies.cells import Rival
 from projflow_lite.studies.control_models import LOADERS, absent_of, said_of
-from projflow_lite.studies.control_ways import RIVALS, TRAINED
+from projflow_lite.studies.control_ways import OURS, RIVALS, TRAINED
 from projflow_lite.widgets import Viewer
 from projflow_lite.widgets.answering import status_line
 
 SEARCH = {"iterations": 20, "solver_steps": 8}
 """The search for noise, short enough to wait for."""
 
-MOVING = Rival("projflow, moving metric", "projflow", (("metric", "moving"),))
+MOVING = OURS[0]._replace(name="projflow, moving metric")
 WAYS = {rival.name: rival for rival in (*RIVALS[:2], MOVING, *RIVALS[2:], *TRAINED)}
 """Those that need no training, ProjFlow with a metric over time, and the trained ones, by name."""
 
