@@ -11,7 +11,6 @@ of all samples of a batch size, and the best rest with each wish. Their sums are
 
 from __future__ import annotations
 
-import inspect
 from typing import Any
 
 import measuring
@@ -19,7 +18,7 @@ import numpy as np
 import torch
 
 import projflow_lite as pf
-from projflow_lite.samplers import flow_times
+from projflow_lite.samplers import METHODS
 
 PROMPT, FRAMES = "a person walks forward", 60
 LIMITS = {1: 1.15, 16: 1.05}
@@ -78,7 +77,7 @@ def measure(batch: int, seconds: float, steps: int | None) -> list[dict[str, Any
         for name in cases
     }
     network = min(min(calls) for calls in inside.values())
-    calls = len(flow_times(steps or default_steps())) - 1
+    calls = steps or METHODS["projflow"].pace.steps
     return [
         {
             "batch": batch,
@@ -92,11 +91,6 @@ def measure(batch: int, seconds: float, steps: int | None) -> list[dict[str, Any
         }
         for name in cases
     ]
-
-
-def default_steps() -> int:
-    """The number of steps that `sample` takes if none is given."""
-    return inspect.signature(pf.sample).parameters["steps"].default
 
 
 def bars(rows: list[dict[str, Any]]) -> list[measuring.Bar]:

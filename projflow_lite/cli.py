@@ -35,7 +35,7 @@ def build_parser() -> argparse.ArgumentParser:
     sample.add_argument("--out", type=Path, default=Path("motion.npz"), help=".npz or .gif")
     sample.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     sample.add_argument("--frames", type=int, default=60)
-    sample.add_argument("--steps", type=int, default=25)
+    sample.add_argument("--steps", type=int, help="of sampling (default 10)")
     sample.add_argument("--guidance", type=float, default=1.0)
     sample.add_argument("--seed", type=int, default=0)
     sample.add_argument("--json", type=Path, help="write length, time and residual to this file")

@@ -33,11 +33,7 @@ from projflow_lite.projection_checks import (
     check_variance,
     holds,
 )
-from projflow_lite.row_blocks import (
-    dense_blocks,
-    independent_rows,
-    name_nearest,
-)
+from projflow_lite.row_blocks import independent_rows, name_nearest
 from projflow_lite.skeleton import EDGES, N_JOINTS, number_array, shown
 
 
@@ -45,6 +41,9 @@ def kinematic_joint_metric(w_kin: float = 10.0, ridge: float = 1.0) -> NDArray:
     r"""The skeleton's metric on one frame and axis, :math:`R_J = w L + \lambda I` (eq. 50)."""
     return joint_metric(kinematic_laplacian(EDGES, N_JOINTS), w_kin, ridge)
 
+
+METRICS = {"kinematic": kinematic_joint_metric(), "euclidean": np.eye(N_JOINTS)}
+"""Joint metrics by name."""
 
 NEARLY_DEPENDENT = 1e3
 """Condition number of the rows above which a person is warned."""
@@ -104,9 +103,8 @@ class Projector:
         # Block by block, so that the residual of a block is a slice and needs no gathering.
         order = np.concatenate([self.keep[:0], *(block.T.ravel() for block in groups)])
         self.blocks, first = [], 0
-        for block in groups:
+        for block, dense in zip(groups, observed, strict=True):
             own = slice(first, first + block.size)
-            dense = dense_blocks(observed, block)
             self.blocks.append(Block(dense, rows.variance[block], own, inner, device))
             first += block.size
         rows = Rows(rows.A[order], rows.y[order], rows.variance[order])
@@ -114,9 +112,12 @@ class Projector:
         self.frames = rows.A.shape[1] // (N_JOINTS * 3)
         self.A = SparseMap(rows.A, inner, device)
         # Of a frame, only the coordinates that some row reads are ever pulled.
-        pulled = np.unique(rows.A.indices % (N_JOINTS * 3))
-        columns = np.arange(self.frames)[:, None] * N_JOINTS * 3 + pulled
-        self.back = SparseMap(rows.A.T.tocsr()[columns.ravel()], inner, device)
+        frame, coordinate = np.divmod(rows.A.indices, N_JOINTS * 3)
+        pulled, place = np.unique(coordinate, return_inverse=True)
+        columns = rows.A.copy()
+        columns.indices = frame * len(pulled) + place
+        columns.resize(len(rows.y), self.frames * len(pulled))
+        self.back = SparseMap(columns.T.tocsr(), inner, device)
         spread = np.kron(covariance, np.eye(3))[pulled]
         self.covariance = torch.as_tensor(spread, dtype=inner, device=device)
         self.y = torch.as_tensor(rows.y, dtype=inner, device=device)
@@ -148,21 +149,26 @@ class Projector:
         check_batch(self.y, len(x), "targets")
         if variance is not None:
             variance = check_variance(variance, self.given, len(x)).to(self.y)
-            variance = torch.where(self.hard, 0.0, variance.index_select(-1, self.order))
+            variance = variance.index_select(-1, self.order).masked_fill(self.hard, 0.0)
             variance = variance.expand(len(x), -1)
-        noise = self.noise if variance is None else torch.where(variance < torch.inf, variance, 0.0)
         z = self.solve(self.y - self.A(x), variance)
-        x = x + self.spread(z)
+        x = self.moved(x, z)
         # Iterative refinement: what rounding left over of S z = y - A x1_hat, removed. Where hard
         # rows are single coordinates and well conditioned there is no need: they are set below.
         for _ in range(self.solves - 1 if self.refines else 0):
-            more = self.solve(self.y - self.A(x) - noise * z, variance)
-            x, z = x + self.spread(more), z + more
-        if variance is not None and not holds(variance + self.hard > self.firm):
-            check_solved((self.y - self.A(x) - noise * z) * (variance < torch.inf), self.firm)
+            more = self.solve(self.left(x, z, variance), variance)
+            x, z = self.moved(x, more), z + more
+        if variance is not None and not holds((variance > self.firm) | self.hard):
+            check_solved(self.left(x, z, variance) * (variance < torch.inf), self.firm)
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.pins.expand(len(x), -1)
         return x.to(self.dtype).index_copy_(-1, self.pinned, exact).reshape(x1_hat.shape)
+
+    def left(self, x: torch.Tensor, z: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
+        r"""What is left over of :math:`S z = y - A \hat x_1` where `x` was moved by z."""
+        if variance is None:
+            return self.y - self.A(x) - self.noise * z
+        return self.y - self.A(x) - torch.where(variance < torch.inf, variance, 0.0) * z
 
     def residual(self, x1: torch.Tensor) -> float:
         """Largest ``|A x - y|`` over the hard rows, metres; 0 if there are none.
@@ -180,10 +186,11 @@ class Projector:
         r"""Solve :math:`(A R^{-1} A^\top + \Sigma) z = r`, block by block, for ``(batch, m)``."""
         return torch.cat([residual[:, :0], *(b.solve(residual, variance) for b in self.blocks)], 1)
 
-    def spread(self, z: torch.Tensor) -> torch.Tensor:
-        r"""Apply :math:`R^{-1} A^\top` to ``(batch, m)``: put it on the joints, let it spread."""
-        pulled = self.back(z).view(len(z), self.frames, len(self.covariance))
-        return (pulled @ self.covariance).flatten(1)
+    def moved(self, x: torch.Tensor, z: torch.Tensor) -> torch.Tensor:
+        r"""Add :math:`R^{-1} A^\top z`: put ``(batch, m)`` on the joints, and let it spread."""
+        pulled = self.back(z).view(len(z) * self.frames, len(self.covariance))
+        coordinates = x.reshape(len(pulled), -1)
+        return torch.addmm(coordinates, pulled, self.covariance).view_as(x)
 
     def aimed_at(self, y: ArrayLike | torch.Tensor) -> Projector:
         """The same rows with other targets, one set for each motion of a batch.
@@ -322,12 +329,13 @@ class SparseMap:
     def __init__(
         self, matrix: sparse.spmatrix, dtype: torch.dtype, device: str | torch.device
     ) -> None:
-        entries = sparse.coo_matrix(matrix)
-        self.shape = entries.shape
-        self.one_each = np.array_equal(entries.row, np.arange(entries.shape[0]))
-        self.row = torch.as_tensor(entries.row, device=device).long()
-        self.column = torch.as_tensor(entries.col, device=device).long()
-        self.value = torch.as_tensor(entries.data, dtype=dtype, device=device)
+        in_rows = sparse.csr_matrix(matrix)
+        self.shape = in_rows.shape
+        row = np.repeat(np.arange(self.shape[0]), np.diff(in_rows.indptr))
+        self.one_each = np.array_equal(row, np.arange(self.shape[0]))
+        self.row = torch.as_tensor(row, device=device).long()
+        self.column = torch.as_tensor(in_rows.indices, device=device).long()
+        self.value = torch.as_tensor(in_rows.data, dtype=dtype, device=device)
 
     def __call__(self, x: torch.Tensor) -> torch.Tensor:
         """Return ``matrix @ x`` for every vector of the batch ``(batch, columns)``."""
@@ -340,10 +348,10 @@ class SparseMap:
 def check_metric(metric: str | ArrayLike) -> NDArray:
     """The joint metric as a positive definite ``(22, 22)`` array, or an error that says why not."""
     if isinstance(metric, str):
-        known = {"kinematic": kinematic_joint_metric(), "euclidean": np.eye(N_JOINTS)}
-        if metric not in known:
-            raise ValueError(f"Projector: metric is one of {', '.join(known)}, not {shown(metric)}")
-        return known[metric]
+        if metric not in METRICS:
+            known = ", ".join(METRICS)
+            raise ValueError(f"Projector: metric is one of {known}, not {shown(metric)}")
+        return METRICS[metric].copy()
     R_J = number_array(metric, "Projector: the metric").astype(np.float64)
     if R_J.shape != (N_JOINTS, N_JOINTS) or not np.isfinite(R_J).all():
         raise ValueError(f"Projector: a metric is a symmetric ({N_JOINTS}, {N_JOINTS}) matrix")

@@ -29,7 +29,8 @@ def check_rows(rows: Rows, dtype: torch.dtype) -> Rows:
         )
     if A.shape[1] == 0 or A.shape[1] % (N_JOINTS * 3):
         raise ValueError(f"Projector: A has {A.shape[1]} columns, not a multiple of {N_JOINTS * 3}")
-    entries = sparse.coo_array(A).data
+    in_rows = sparse.csr_matrix(A, copy=True)
+    entries = in_rows.data
     for name, values in (("A", entries), ("y", y), ("variance", variance)):
         number_array(values, f"Projector: {name}")
     if not (np.isfinite(entries).all() and np.isfinite(y).all() and np.isfinite(variance).all()):
@@ -39,7 +40,7 @@ def check_rows(rows: Rows, dtype: torch.dtype) -> Rows:
     largest = np.abs(y).max(initial=0.0)
     if largest > torch.finfo(dtype).max:
         raise ValueError(f"Projector: a target of {largest:.3g} m is more than {dtype} holds")
-    in_rows = sparse.csr_matrix(A, dtype=np.float64, copy=True)
+    in_rows = in_rows.astype(np.float64, copy=False)
     in_rows.sum_duplicates()
     in_rows.eliminate_zeros()
     empty = np.flatnonzero(np.diff(in_rows.indptr) == 0)

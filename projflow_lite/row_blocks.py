@@ -41,11 +41,13 @@ def blocks_of_rows(A: sparse.csr_matrix) -> list[NDArray]:
     if A.shape[0] == 0:
         return []
     cell = A.indices // (3 * N_JOINTS) * 3 + A.indices % 3
-    touches = sparse.csr_matrix((np.ones(A.nnz), cell, A.indptr), (A.shape[0], A.shape[1]))
-    _, label = connected_components(touches @ touches.T, directed=False)
-    order, sizes = np.argsort(label, kind="stable"), np.bincount(label)
-    blocks = np.split(order, np.cumsum(sizes)[:-1])
-    return [np.array([k for k in blocks if len(k) == size]) for size in np.unique(sizes)]
+    label = cell[A.indptr[:-1]]
+    if (cell != np.repeat(label, np.diff(A.indptr))).any():  # some rows reach beyond one cell
+        touches = sparse.csr_matrix((np.ones(A.nnz), cell, A.indptr), (A.shape[0], A.shape[1]))
+        _, label = connected_components(touches @ touches.T, directed=False)
+    size = np.bincount(label)[label]
+    order = np.lexsort((label, size))  # stable: within a group the rows keep their order
+    return [order[size[order] == n].reshape(-1, n) for n in np.unique(size)]
 
 
 def metric_times_rows(A: sparse.csr_matrix, covariance: NDArray) -> sparse.csr_matrix:
@@ -79,14 +81,14 @@ class Independent(NamedTuple):
         condition: the largest condition number of a block of them.
         worst: the indices of the rows of that block; empty where no rows couple.
         blocks: the rows that stay, in groups that can be solved alone, see `blocks_of_rows`.
-        observed: ``(m, m)``, :math:`A R^{-1} A^\\top` of all rows.
+        observed: their parts of :math:`A R^{-1} A^\\top`, see `dense_blocks`.
     """
 
     keep: NDArray[np.int64]
     condition: float
     worst: NDArray[np.int64]
     blocks: list[NDArray]
-    observed: sparse.csr_matrix
+    observed: list[NDArray]
 
 
 def independent_rows(rows: Rows, covariance: NDArray) -> Independent:
@@ -95,11 +97,11 @@ def independent_rows(rows: Rows, covariance: NDArray) -> Independent:
     Raises:
         ValueError: if a row contradicts the others, or hardly differs from what they say.
     """
-    observed, blocks = observed_covariance(rows.A, covariance), blocks_of_rows(rows.A)
+    whole, blocks = observed_covariance(rows.A, covariance), blocks_of_rows(rows.A)
+    observed = [dense_blocks(whole, block) for block in blocks]
     keep = np.ones(len(rows.y), dtype=bool)
     condition, worst = 1.0, np.zeros(0, dtype=np.int64)
-    for block in blocks:
-        dense = dense_blocks(observed, block)
+    for block, dense in zip(blocks, observed, strict=True):
         dense = dense + rows.variance[block][:, None] * np.eye(block.shape[1])
         scale = 1 / np.sqrt(np.diagonal(dense, axis1=1, axis2=2))
         eigenvalues = np.linalg.eigvalsh(dense * scale[:, :, None] * scale[:, None, :])
@@ -114,6 +116,7 @@ def independent_rows(rows: Rows, covariance: NDArray) -> Independent:
     if not keep.all():  # what is left may fall apart into smaller blocks
         stay = np.flatnonzero(keep)
         blocks = [stay[block] for block in blocks_of_rows(rows.A[stay])]
+        observed = [dense_blocks(whole, block) for block in blocks]
     return Independent(np.flatnonzero(keep), condition, worst[keep[worst]], blocks, observed)
 
 

@@ -183,9 +183,10 @@ def weighted_rows(
         std: standard deviation of every target, metres; 0 means exactly.
     """
     m, k = columns.shape
-    data = np.broadcast_to(weights, (m, k)).ravel()
-    place = (np.repeat(np.arange(m), k), columns.ravel())
-    A = sparse.csr_matrix((data, place), (m, frames * N_JOINTS * 3))
+    data = np.broadcast_to(weights, (m, k)).astype(np.float64).ravel()
+    starts = np.arange(0, m * k + 1, k)
+    A = sparse.csr_matrix((data, columns.ravel(), starts), (m, frames * N_JOINTS * 3))
+    A.sum_duplicates()
     A.eliminate_zeros()
     return Rows(A, np.asarray(y, dtype=np.float64), np.full(m, float(std) ** 2))
 

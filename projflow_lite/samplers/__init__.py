@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, NamedTuple
@@ -35,11 +34,12 @@ from projflow_lite.samplers.guides import Guides, GuideSettings
 from projflow_lite.samplers.imputation import imputation
 from projflow_lite.samplers.misfit import Misfit
 from projflow_lite.samplers.moving import MovingMetric, MovingStep, projection_step
+from projflow_lite.samplers.pace import QUICK, SOLVERS, Pace, check_solver, flow_times
 from projflow_lite.samplers.pnp_flow import pnp_flow
 from projflow_lite.samplers.projflow import Step, Velocity, projflow
 from projflow_lite.samplers.replacement import replacement
 from projflow_lite.samplers.step import ProjectionStep
-from projflow_lite.skeleton import N_JOINTS, number_array, shown
+from projflow_lite.skeleton import N_JOINTS, shown
 
 __all__ = [
     "METHODS",
@@ -63,6 +63,7 @@ __all__ = [
     "dno",
     "dps",
     "euler",
+    "flow_times",
     "flowchef",
     "flowdps",
     "gmd",
@@ -90,16 +91,18 @@ class Method(NamedTuple):
         takes_goals: whether the loop takes `goal`, with or without a wish, and `space`, for priors
             that are not on motions in metres.
         model: what loads a prior that was trained for it; empty if it takes any prior.
+        pace: how it goes through flow time if nobody says.
     """
 
     sampler: Callable[..., torch.Tensor]
     aim: Callable[..., Any]
     takes_goals: bool
     model: str = ""
+    pace: Pace = Pace()
 
 
 METHODS = {
-    "projflow": Method(projflow, projection_step, takes_goals=False),
+    "projflow": Method(projflow, projection_step, takes_goals=False, pace=QUICK),
     "gmd": Method(gmd, pins_to_impute, takes_goals=True),
     "gmd_keyframes": Method(gmd_keyframes, pins_to_impute, takes_goals=True),
     "ddnm": Method(ddnm, partial(exact_rows, "ddnm"), takes_goals=False),
@@ -128,10 +131,11 @@ def sample(
     wish: Wish | None = None,
     prompt: str | Sequence[str | None] | None = None,
     frames: int = 60,
-    steps: int | Sequence[float] = 25,
+    steps: int | Sequence[float] | None = None,
     seed: int = 0,
     method: str = "projflow",
     *,
+    solver: str | None = None,
     goal: Goal | None = None,
     batch: int | None = None,
     guidance: float = 1.0,
@@ -151,13 +155,17 @@ def sample(
         wish: what must hold; None for an unconstrained sample.
         prompt: what the motion should be; one text, or one for each motion of the batch.
         frames: length of the motion, at 20 frames a second.
-        steps: how many sampling steps, see `flow_times`; or their flow times, from 0 to 1.
+        steps: how many sampling steps, see `flow_times`; or their flow times, from 0 to 1. None for
+            as many as are enough: ten for projflow and without a wish, 25 for other methods.
         seed: the same seed gives the same motion.
         method: a name of `METHODS`: "projflow"; or "gmd" and "gmd_keyframes", which overwrite
             exact pins, and push; or a rival: "ddnm", exact for any hard wish; "replacement" and
             "imputation", for exact pins; "flowdps", "pnp_flow", "flowchef", "dps" and "dno", which
             come near to any wish; or "control_branch" and "condmdi", which come near to exact pins
             with a prior that was trained for that, see `projflow_lite.prior.conditioned_files`.
+        solver: "multistep", whose steps look ahead (see `projflow_lite.samplers.euler.multistep`),
+            or "euler". None for the first with projflow and without a wish, and for Euler's steps
+            with other methods.
         goal: what else to reach, as a function of motions, see `goals`; with or without a wish.
             For the methods of GMD.
         batch: how many motions; None for one, without a batch dimension.
@@ -185,8 +193,10 @@ def sample(
     check_method(prior, wish, goal, method)
     if hasattr(prior, "check_frames"):
         prior.check_frames(frames)
-    times = flow_times(steps)
-    sampler, make_aim, takes_goals, _ = METHODS[method]
+    sampler, make_aim, takes_goals, _, pace = METHODS[method]
+    pace = QUICK if wish is None and not takes_goals else pace
+    check_solver(solver, method, pace)
+    times = pace.times(steps)
     space: Any = prior if hasattr(prior, "unproject") else Metres()
     noise_std = torch.as_tensor(getattr(prior, "noise_std", 1.0), dtype=dtype)
     aim: Any = None
@@ -199,7 +209,7 @@ def sample(
         options |= {"goal": goal, "space": space}
     generator = torch.Generator().manual_seed(seed)
     x0 = draw_noise(space, noise_std, (batch or 1, frames, N_JOINTS, 3), dtype, generator)
-    velocity = checked(guided(prior, guidance))
+    velocity = SOLVERS[solver or pace.solver](checked(guided(prior, guidance)), times)
     with torch.no_grad():  # and not inference mode: a goal's gradient goes through these tensors
         if aim is None:
             x1 = space.unproject(euler(velocity, x0, times, prompt))
@@ -212,34 +222,13 @@ def sample(
     return Motion(positions, texts, wish)  # type: ignore[arg-type]
 
 
-def flow_times(steps: int | Sequence[float]) -> list[float]:
-    r"""Flow times from 0 to 1: the given ones, or :math:`t_k = 1 - (1 - k/T)^2` for T steps.
-
-    The noise is a metre wide and a body's details are millimetres, so most is decided late:
-    `projflow-lite reproduce fewer-steps` compares these times with even ones.
-
-    Raises:
-        ValueError: if times do not rise from 0 to 1.
-    """
-    whole = isinstance(steps, int | np.integer) and not isinstance(steps, bool)
-    if whole and int(steps) >= 1:  # type: ignore[arg-type]
-        even = torch.linspace(0, 1, int(steps) + 1, dtype=torch.float64)  # type: ignore[arg-type]
-        return (1 - (1 - even).square()).tolist()
-    given = number_array(steps, "sample: steps") if np.ndim(steps) == 1 else np.zeros(0)
-    times = given.astype(float).tolist()
-    rising = all(a < b for a, b in itertools.pairwise(times))
-    if len(times) < 2 or times[0] != 0 or times[-1] != 1 or not rising:
-        raise ValueError("sample: steps is a whole number, or flow times that rise from 0 to 1")
-    return times
-
-
 def check_numbers(
-    frames: int, steps: int | Sequence[float], guidance: float, batch: int | None, seed: int
+    frames: int, steps: int | Sequence[float] | None, guidance: float, batch: int | None, seed: int
 ) -> None:
     """Refuse a count below 1, or a guidance or seed that is not a number."""
     for name, value in (("frames", frames), ("steps", steps), ("batch", batch)):
         given_times = name == "steps" and isinstance(value, Sequence | np.ndarray | torch.Tensor)
-        if (value is None and name == "batch") or (given_times and not isinstance(value, str)):
+        if (value is None and name != "frames") or (given_times and not isinstance(value, str)):
             continue
         if isinstance(value, bool) or not isinstance(value, int) or value < 1:
             raise ValueError(f"sample: {name} is a whole number of at least 1, not {shown(value)}")

@@ -47,15 +47,16 @@ def ddnm(
     Source: ProjFlow eq. 21, between the steps of a flow instead of a diffusion.
     """
     check_callback("ddnm", callback)
-    x_t = x0
+    x_t, spread = x0, torch.as_tensor(noise_std, dtype=x0.dtype)
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)
-        x1_hat, implied = x_t + (1 - t) * v, x_t - t * v
+        x1_hat, noise = x_t + (1 - t) * v, x_t - t * v
         x1 = project(x1_hat, t)
-        fresh = noise_std * torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
         share = fresh_share(eta, t, t_next)
-        noise = (1 - share) ** 0.5 * implied + share**0.5 * fresh
+        if share > 0 and t_next < 1:
+            fresh = torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
+            noise = torch.addcmul((1 - share) ** 0.5 * noise, share**0.5 * spread, fresh)
         if callback:
             callback(Step(t, t_next, x_t, x1_hat, x1, residual=project.residual(x1)))
-        x_t = t_next * x1 + (1 - t_next) * noise
+        x_t = torch.lerp(noise, x1, t_next)
     return x_t

@@ -150,7 +150,7 @@ class Guides:
         budget = budget / total.clamp(min=1e-12)
         pi = (budget.index_select(1, self.frame) * self.q).clamp(c.pi_min, c.pi_max)  # eq. 52
         sigma2 = self.r * (1 / pi - 1)  # eq. 18, 47
-        soft = torch.where(self.distance < radius, sigma2, torch.inf)
+        soft = sigma2.masked_fill(self.distance >= radius, torch.inf)
         return torch.cat([self.given.expand(len(soft), -1), soft], dim=1)
 
     def frame_trust(self, x1_hat: torch.Tensor, t: float) -> torch.Tensor:
@@ -162,7 +162,7 @@ class Guides:
         bend = x1_hat.flatten(2).diff(n=2, dim=1)
         s = torch.linalg.vector_norm(bend @ self.C, dim=2)  # eq. 17
         s = torch.cat([s[:, :1], s, s[:, -1:]], dim=1)
-        ratio = torch.where(s > 0, s / middle(s, c.form), 0.0)
+        ratio = (s / middle(s, c.form)).masked_fill(s == 0, 0.0)
         return tau * c.c0 / (1 + c.lambda_s * ratio**c.p)  # eq. 15
 
 

@@ -26,7 +26,7 @@ class Step(NamedTuple):
     Attributes:
         t, t_next: flow time before and after the step.
         x_t: the state.
-        x1_hat: the predicted clean motion (eq. 5).
+        x1_hat: the predicted clean motion (eq. 5); with `multistep`, where it is heading.
         x1_projected: the same, moved onto the wish (eq. 8).
         variance: ``(batch, rows)`` of the rows and guides at this step, square metres; infinity
             where a guide is idle. None if the projection is not a `ProjectionStep`.
@@ -94,22 +94,23 @@ def projflow(
     if noise not in ("original", "implied"):
         raise ValueError(f"projflow: noise is 'original' or 'implied', not {shown(noise)}")
     check_callback("projflow", callback)
-    x_t = x0
+    x_t, spread = x0, torch.as_tensor(noise_std, dtype=x0.dtype)
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)
         x1_hat = x_t + (1 - t) * v  # eq. 5
         x1 = project(x1_hat, t)  # eq. 6-8
-        source = x0 if noise == "original" else x_t - t * v
-        fresh = noise_std * torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
+        mixed = x0 if noise == "original" else x_t - t * v
         share = fresh_share(eta, t, t_next)
-        mixed = (1 - share) ** 0.5 * source + share**0.5 * fresh  # eq. 9
+        if share > 0 and t_next < 1:
+            fresh = torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
+            mixed = torch.addcmul((1 - share) ** 0.5 * mixed, share**0.5 * spread, fresh)  # eq. 9
         if callback:
             step = Step(t, t_next, x_t, x1_hat, x1)
             if isinstance(project, ProjectionStep):
                 variance, residual = project.variance(x1_hat, t), project.residual(x1)
                 step = step._replace(variance=variance, residual=residual)
             callback(step)
-        x_t = t_next * x1 + (1 - t_next) * mixed  # eq. 10
+        x_t = torch.lerp(mixed, x1, t_next)  # eq. 10
     return x_t
 
 

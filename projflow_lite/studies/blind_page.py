@@ -27,7 +27,7 @@ def run(
     real: str | Path | None = None,
     clips: int = 8,
     frames: int = 60,
-    steps: int = 50,
+    steps: int | None = None,
     seed: int = 0,
 ) -> list[Path]:
     """Write the page ``blind.html`` and its key ``blind_key.json``.
@@ -38,7 +38,7 @@ def run(
         real: an ``.npz`` file of recorded motion, see `read_real`; None for a page without it.
         clips: how many of each kind.
         frames: length of every clip.
-        steps: sampling steps.
+        steps: of sampling, see `sample`.
         seed: of the choice of clips, the noise and the order; nothing is picked by hand.
 
     Raises:

@@ -23,7 +23,7 @@ from tqdm.auto import tqdm
 from data_synth import held_out
 from projflow_lite.prior import Prior
 from projflow_lite.prior.network import draw, spline_kernel
-from projflow_lite.samplers import sample
+from projflow_lite.samplers import flow_times, sample
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import interval, load_evaluator, multimodality, score_clips
 from projflow_lite.studies.cells import DATA, fingerprint, stored
@@ -271,7 +271,8 @@ def generate(prior: Velocity, like: Sample, steps: int, seed: int, bar: tqdm) ->
         frames = len(like.positions[start])
         # Other noise for every batch of every repetition, the same for every number of steps.
         noise = 10_000 * seed + start
-        motion = sample(prior, None, texts, frames, steps, noise, batch=len(texts))
+        times = flow_times(steps)
+        motion = sample(prior, None, texts, frames, times, noise, batch=len(texts), solver="euler")
         made.extend(motion.positions)
         bar.update(len(texts))
     return Sample(made, like.captions)

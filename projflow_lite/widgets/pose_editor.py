@@ -26,18 +26,16 @@ SETTLE = 0.01  # seconds: a hand that drags is followed, and need not come to re
 class PoseEditor(widgets.VBox):
     """A motion whose joints can be grabbed. What was dragged stays where it was put, exactly.
 
-    While the hand moves, a few steps of the sampler answer, and one message to the page; once it
-    lets go, all of them do, and the line of words and the written place follow. The noise stays the
-    same, so that only the pins change the motion. Without a mouse: choose the joint and the frame,
-    and write its place.
+    While the hand moves, one message to the page answers; once it lets go, the line of words and
+    the written place follow. The noise stays the same, so that only the pins change the motion.
+    Without a mouse: choose the joint and the frame, and write its place.
 
     Args:
         prior: what to sample from, see `sample`.
         prompt: what the motion should be.
         frames: length of the motion.
         wish: what must hold besides the pins, or None.
-        steps: of the sampler; or flow times.
-        drag_steps: the same while a joint is dragged.
+        steps: of the sampler; or flow times; or None, see `sample`.
         seed: of the noise.
         height: of the picture, pixels.
         options: further arguments of `sample`.
@@ -55,19 +53,18 @@ class PoseEditor(widgets.VBox):
         prompt: str | None = None,
         frames: int = 60,
         wish: Wish | None = None,
-        steps: int | Sequence[float] = 25,
-        drag_steps: int = 8,
+        steps: int | Sequence[float] | None = None,
         seed: int = 0,
         height: int = 460,
         **options: Any,
     ) -> None:
-        self.prior, self.wish, self.steps, self.drag_steps = prior, wish, steps, drag_steps
-        self.options = {"prompt": prompt, "frames": frames, "seed": seed} | options
+        self.prior, self.wish = prior, wish
+        self.options = {"prompt": prompt, "frames": frames, "steps": steps, "seed": seed} | options
         self.pins: dict[tuple[int, int], tuple[float, ...]] = {}
         self.runs = 0
         self.error: Exception | None = None
         self._later = Later(SETTLE)
-        self.motion = self._sample(steps)
+        self.motion = self._sample()
         self.viewer = Viewer(self.motion, grab=True, playing=False, height=height)
         self._make_controls()
         super().__init__([self._controls(), self.viewer, self.status])
@@ -114,17 +111,14 @@ class PoseEditor(widgets.VBox):
             return
         self._pin(pull["joint"], pull["frame"], pull["at"])
         self.joint.value = pull["joint"]
-        if pull["done"]:
-            self._soon(self.steps)
-        else:
-            self._soon(self.drag_steps, wordless=True)
+        self._soon(wordless=not pull["done"])
 
     def _written(self, change: dict[str, Any]) -> None:
         """A coordinate was written."""
         if self._showing:
             return
         self._pin(self.joint.value, self.viewer.frame, [field.value for field in self.place])
-        self._soon(self.steps)
+        self._soon()
 
     def _pin(self, joint: int, frame: int, at: Sequence[float]) -> None:
         """Make a pin, or move it; the last one moved is the first one to be undone."""
@@ -135,23 +129,22 @@ class PoseEditor(widgets.VBox):
         """Take away the pins that were made last."""
         for key in list(self.pins)[::-1][:number]:
             del self.pins[key]
-        self._soon(self.steps)
+        self._soon()
 
-    def _soon(self, steps: int | Sequence[float], wordless: bool = False) -> None:
+    def _soon(self, wordless: bool = False) -> None:
         """Run once things have settled: what was dragged while we were busy makes one motion."""
-        self._later.call(self.run, steps, wordless)
+        self._later.call(self.run, wordless)
 
-    def run(self, steps: int | Sequence[float] | None = None, wordless: bool = False) -> None:
+    def run(self, wordless: bool = False) -> None:
         """Make the motion anew, and show it or say what is wrong.
 
         Args:
-            steps: of the sampler; None for all of them.
             wordless: send the picture alone, in one message, unless there is an error to say or to
                 take back: the words would be old before they are read.
         """
         start, wordless = time.perf_counter(), wordless and self.error is None
         try:
-            self.motion, self.error = self._sample(steps or self.steps), None
+            self.motion, self.error = self._sample(), None
         except Exception as error:  # anything at all: a traceback would vanish in a log
             self.error = error
             self._say(f"error: {error}", "pf-bad")
@@ -165,12 +158,12 @@ class PoseEditor(widgets.VBox):
         count = f"{len(self.pins)} pin{'s' * (len(self.pins) != 1)}"
         self._say(f"{count} · {report(self.motion, seconds)}" if self.pins else ASK)
 
-    def _sample(self, steps: int | Sequence[float]) -> Motion:
+    def _sample(self) -> Motion:
         wishes = [pin(joint, frame, at) for (joint, frame), at in self.pins.items()]
         if self.wish is not None:
             wishes.append(self.wish)
         wish = reduce(and_, wishes) if wishes else None
-        return sample(self.prior, wish, steps=steps, **self.options)
+        return sample(self.prior, wish, **self.options)
 
     def _show_place(self, change: dict[str, Any] | None = None) -> None:
         """Write where the chosen joint is in the frame that is shown."""

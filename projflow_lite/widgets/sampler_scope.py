@@ -37,7 +37,7 @@ class SamplerScope(widgets.VBox):
         wish: what must hold.
         prompt: what the motion should be.
         frames: length of the motion.
-        steps: of the sampler; or flow times.
+        steps: of the sampler; or flow times; or None, see `sample`.
         seed: of its noise.
         guides: see `sample`.
         height: of the picture of the body, pixels.
@@ -56,7 +56,7 @@ class SamplerScope(widgets.VBox):
         wish: Wish,
         prompt: str | None = None,
         frames: int = 60,
-        steps: int | Sequence[float] = 25,
+        steps: int | Sequence[float] | None = None,
         seed: int = 0,
         guides: bool | GuideSettings = True,
         height: int = 380,

@@ -10,6 +10,7 @@ from rival_flow import (
     ROWS,
     SHAPE,
     SOFT,
+    STEPS,
     dense,
     fresh_noise,
     replayed,
@@ -19,13 +20,14 @@ from rival_flow import (
 
 import projflow_lite as pf
 from projflow_lite import equations
-from projflow_lite.samplers import METHODS, GuideSettings
+from projflow_lite.samplers import METHODS, GuideSettings, flow_times
 
 
 @pytest.mark.parametrize("eta", [0.0, "ddpm"])
 @pytest.mark.parametrize("wish", [PINS, ROWS], ids=["pins", "rows"])
 def test_ddnm_is_projflow_without_metric_guides_and_fresh_noise_bit_for_bit(wish, eta):
     same = {"metric": "euclidean", "guides": False, "noise": "implied", "eta": eta}
+    same |= {"steps": flow_times(STEPS), "solver": "euler"}
     theirs = sample(wish, method="ddnm", eta=eta)
     np.testing.assert_array_equal(theirs.positions, sample(wish, **same).positions)
     assert theirs.residual < 1e-12

@@ -48,7 +48,8 @@ def test_without_wish_or_fresh_noise_the_recomposition_is_an_euler_step():
 def test_every_step_is_the_equations(noise):
     """Replay each step in numpy from what the callback saw, drawing the same fresh noise."""
     wish, steps = pf.pin("head", [2, 9], [[1, 2, 3], [4, 5, 6]]), []
-    sample(wish, noise=noise, callback=steps.append, dtype=torch.float64, seed=5)
+    common = {"callback": steps.append, "dtype": torch.float64, "seed": 5}
+    sample(wish, noise=noise, solver="euler", **common)
     random = torch.Generator().manual_seed(5)
     shape = (1, 12, 22, 3)
     x0 = NOISE_STD * torch.randn(shape, generator=random, dtype=torch.float64).numpy()
@@ -97,11 +98,17 @@ def test_fresh_noise_narrows_the_samples():
     Noising the mean again, instead of a draw around it, loses the spread that the draw would have.
     """
     for steps in (20, 200):
-        assert spread_away_from_the_pin(noise="implied", steps=steps) < 0.85 * DATA_STD
+        assert spread_away_from_the_pin(steps=steps, solver="euler") < 0.85 * DATA_STD
+
+
+def test_looking_ahead_gives_the_spread_back():
+    """What a step loses by noising the mean again, the next one's extrapolation finds missing."""
+    for steps in (10, 20, 200):
+        assert spread_away_from_the_pin(steps=steps) == pytest.approx(DATA_STD, rel=0.05)
 
 
 def test_diffusions_share_of_fresh_noise_keeps_the_spread():
-    few, many = (spread_away_from_the_pin(eta="ddpm", steps=n) for n in (20, 200))
+    few, many = (spread_away_from_the_pin(eta="ddpm", steps=n, solver="euler") for n in (20, 200))
     assert many == pytest.approx(DATA_STD, rel=0.03)
     assert abs(few - DATA_STD) > abs(many - DATA_STD)
 
@@ -137,11 +144,37 @@ def test_a_callback_sees_variances_and_residuals():
 def test_times_may_be_given():
     wish = pf.pin("head", 3, [0, 1, 2])
     even = sample(wish, steps=4).positions
-    np.testing.assert_array_equal(even, sample(wish, steps=flow_times(4)).positions)
+    np.testing.assert_array_equal(even, sample(wish, steps=flow_times(4, 3)).positions)
     assert flow_times(4) == [0, 0.4375, 0.75, 0.9375, 1]
     uneven = sample(wish, steps=np.array([0, 0.5, 0.8, 0.95, 1.0]))
     assert uneven.residual < 1e-6
     assert np.abs(even - uneven.positions).max() > 1e-3
+
+
+def test_every_method_has_its_pace():
+    """Ten cubic multistep calls for projflow and without a wish; 25 of Euler's for the others."""
+    wish, asked = pf.pin("head", 3, [0, 1, 2]), []
+
+    def counted(x_t, t, text=None):
+        asked.append(t)
+        return gaussian_velocity(x_t, t)
+
+    counted.noise_std = NOISE_STD
+    calls = {}
+    for name, wanted, method in (("free", None, "projflow"), ("projflow", wish, "projflow"),
+                                 ("ddnm", wish, "ddnm"), ("gmd", wish, "gmd")):  # fmt: skip
+        asked.clear()
+        pf.sample(counted, wanted, frames=12, method=method)
+        calls[name] = list(asked)
+    assert calls["free"] == calls["projflow"] == flow_times(10, 3)[:-1]
+    assert calls["ddnm"] == calls["gmd"] == flow_times(25)[:-1]
+
+
+def test_a_solver_is_chosen_by_name():
+    wish = pf.pin("head", 3, [0, 1, 2])
+    usual, plain = sample(wish), sample(wish, solver="euler")
+    np.testing.assert_array_equal(usual.positions, sample(wish, solver="multistep").positions)
+    assert np.abs(usual.positions - plain.positions).max() > 1e-3
 
 
 def test_the_seed_decides():

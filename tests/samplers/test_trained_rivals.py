@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 import torch
-from rival_flow import FRAMES, PINS, ROWS, SHAPE, STD, velocity
+from rival_flow import FRAMES, PINS, ROWS, SHAPE, STD, STEPS, velocity
 from rival_flow import sample as sampled
 
-from projflow_lite.samplers import METHODS, GuideSettings, condmdi, control_branch
+from projflow_lite.samplers import METHODS, GuideSettings, condmdi, control_branch, flow_times
 from projflow_lite.samplers.gmd_imputation import known_coordinates
 
 TRAINED = ["control_branch", "condmdi"]
@@ -55,7 +55,7 @@ def test_the_network_is_told_the_pins_in_every_step_and_nothing_else(method):
 
 @pytest.mark.parametrize("method", TRAINED)
 def test_a_network_that_does_not_look_gives_the_plain_sample(method):
-    plain = sampled(None).positions
+    plain = sampled(None, steps=flow_times(STEPS), solver="euler").positions
     np.testing.assert_allclose(sample(method, 0.0).positions, plain, atol=1e-12)
 
 

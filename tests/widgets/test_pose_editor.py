@@ -17,7 +17,7 @@ def still(x_t, t, text):
 
 @pytest.fixture
 def editor():
-    return PoseEditor(still, frames=24, steps=4, drag_steps=2)
+    return PoseEditor(still, frames=24, steps=4)
 
 
 def pull(editor, joint, frame, at, done=True):
@@ -40,17 +40,6 @@ def test_pulling_on_moves_the_same_pin(editor):
     pull(editor, HEAD, 3, [0.0, 1.75, 0.0])
     assert list(editor.pins) == [(WRIST, 7), (HEAD, 3)]
     assert editor.pins[WRIST, 7][0] == 0.3
-
-
-def test_a_drag_takes_few_steps_and_letting_go_all_of_them(editor, monkeypatch):
-    asked = []
-    plain = PoseEditor._sample
-    monkeypatch.setattr(
-        PoseEditor, "_sample", lambda self, steps: asked.append(steps) or plain(self, steps)
-    )
-    pull(editor, WRIST, 7, [0.5, 1.0, 0.0], done=False)
-    pull(editor, WRIST, 7, [0.5, 1.0, 0.0], done=True)
-    assert asked == [2, 4]
 
 
 def messages_of(editor):
