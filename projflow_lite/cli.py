@@ -15,7 +15,13 @@ def build_parser() -> argparse.ArgumentParser:
     """Describe every command and option."""
     parser = argparse.ArgumentParser(prog="projflow-lite", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
+    for describe in (say_train, say_sample, say_reproduce, say_score, say_derive, say_classroom):
+        describe(commands)
+    return parser
 
+
+def say_train(commands: argparse._SubParsersAction) -> None:
+    """The options of ``train``."""
     train = commands.add_parser("train", help="teach the tiny flow; stop and resume at will")
     train.add_argument(
         "--recipe",
@@ -30,6 +36,9 @@ def build_parser() -> argparse.ArgumentParser:
     train.add_argument("--json", type=Path, help="write the closing numbers to this file")
     train.set_defaults(run=run_train)
 
+
+def say_sample(commands: argparse._SubParsersAction) -> None:
+    """Those of ``sample``."""
     sample = commands.add_parser("sample", help="make one motion from a prompt")
     sample.add_argument("prompt", help='for example "a person walks forward"')
     sample.add_argument("--out", type=Path, default=Path("motion.npz"), help=".npz or .gif")
@@ -41,6 +50,9 @@ def build_parser() -> argparse.ArgumentParser:
     sample.add_argument("--json", type=Path, help="write length, time and residual to this file")
     sample.set_defaults(run=run_sample)
 
+
+def say_reproduce(commands: argparse._SubParsersAction) -> None:
+    """Those of ``reproduce``."""
     reproduce = commands.add_parser(
         "reproduce",
         help="measure or draw again what the docs show",
@@ -60,6 +72,9 @@ def build_parser() -> argparse.ArgumentParser:
     reproduce.add_argument("--json", type=Path, help="write the numbers to this file")
     reproduce.set_defaults(run=run_reproduce)
 
+
+def say_score(commands: argparse._SubParsersAction) -> None:
+    """Those of ``score``."""
     score = commands.add_parser("score", help="judge a prior against held-out motion")
     score.add_argument("--prior", type=Path, help="a checkpoint (default: the shipped one)")
     score.add_argument("--classroom", type=Path, help="a second checkpoint, to judge beside it")
@@ -76,19 +91,24 @@ def build_parser() -> argparse.ArgumentParser:
     score.add_argument("--json", type=Path, help="write the numbers to this file")
     score.set_defaults(run=run_score)
 
+
+def say_derive(commands: argparse._SubParsersAction) -> None:
+    """Those of ``derive``."""
     derive = commands.add_parser("derive", help="derive every equation again, by other means")
     derive.add_argument("--only", type=int, nargs="+", metavar="N", help="these of ProjFlow only")
     derive.add_argument("--seed", type=int, default=0)
     derive.add_argument("--json", type=Path, help="write the table to this file")
     derive.set_defaults(run=run_derive)
 
+
+def say_classroom(commands: argparse._SubParsersAction) -> None:
+    """Those of ``classroom``."""
     classroom = commands.add_parser(
         "classroom", help="how many wrong answers the exercises catch; or lay out a course"
     )
     classroom.add_argument("--course", type=Path, help="write an nbgrader course to this folder")
     classroom.add_argument("--json", type=Path, help="write the numbers to this file")
     classroom.set_defaults(run=run_classroom)
-    return parser
 
 
 def run_train(options: argparse.Namespace) -> dict:
