@@ -76,11 +76,11 @@ class PoseEditor(widgets.VBox):
         self.joint = widgets.Dropdown(
             options=[(name.replace("_", " "), k) for k, name in enumerate(JOINTS)],
             value=JOINTS.index("left_wrist"), description="joint",
-            layout={"width": "200px"}, style={"description_width": "40px"},
+            layout={"width": "185px"}, style={"description_width": "40px"},
         )  # fmt: skip
         self.place = [
             widgets.FloatText(
-                description=axis, step=0.05, layout={"width": "110px"},
+                description=axis, step=0.05, layout={"width": "104px"},
                 style={"description_width": "14px"},
             )
             for axis in "xyz"
@@ -88,7 +88,7 @@ class PoseEditor(widgets.VBox):
         self.undo = widgets.Button(description="Undo", tooltip="Take the last pin away")
         self.clear = widgets.Button(description="Clear", tooltip="Take all pins away")
         for button in (self.undo, self.clear):
-            button.layout.width = "75px"
+            button.layout.width = "70px"
         self.status = widgets.HTML()
 
     def _controls(self) -> widgets.Widget:
