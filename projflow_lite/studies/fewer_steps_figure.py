@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from projflow_lite.studies.fewer_steps_words import DATA, OFF_FLOW, methods_of, usual_of
+from projflow_lite.studies.fewer_steps_words import DATA, OFF_FLOW, methods_of, plain_of
 from projflow_lite.studies.posterior_figure import (
     BLUE,
     GREEN,
@@ -68,14 +68,14 @@ def draw_free(axes: Any, rows: list[dict[str, Any]], data: dict[str, Any]) -> No
 def draw_wish(axes: Any, rows: list[dict[str, Any]], data: dict[str, Any]) -> None:
     """With a wish: what eq. 9 mixes, in two scores, and solvers with the sampler's own noise."""
     methods, task = methods_of(rows), rows[0]["task"].replace("_", " ").capitalize()
-    usual = usual_of(methods)
+    plain = plain_of(methods)
     readings = {
         "metric over time" if m[4] == "moving" else f"{m[2]}, η {m[3] or 0}": part
         for m, part in methods.items()
         if m[:2] == ("quadratic", "Euler")
     }
     solvers = {
-        m[1]: part for m, part in methods.items() if m[0] == "quadratic" and m[2:] == usual[2:]
+        m[1]: part for m, part in methods.items() if m[0] == "quadratic" and m[2:] == plain[2:]
     }
     draw(axes[0], readings, "kinetic distance", data, f"{task}: noise and metric")
     draw(axes[1], readings, "worst acceleration", data, f"{task}: noise and metric")

@@ -126,7 +126,7 @@ def all_ways(quick: bool = False) -> list[Way]:
     """Everything that is measured; only Euler's steps are taken to the largest number.
 
     Without a wish: every spacing, with solvers of one call a step; those of two with cubic times.
-    With one: the spacing that `sample` takes; for two readings cubic times as well.
+    With one: quadratic times, as the other tables have; for two readings cubic ones as well.
     """
     steps = QUICK_STEPS if quick else STEPS
     twice = [count for count in steps if 4 * count <= steps[-1]]

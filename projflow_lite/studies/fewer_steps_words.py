@@ -149,22 +149,22 @@ def sentences(rows: list[dict[str, Any]]) -> list[str]:
     said = []
     for task in dict.fromkeys(row["task"] for row in rows if row is not data):
         methods = methods_of(row for row in rows if row["task"] == task)
-        usual = usual_of(methods)
-        reference = methods[usual][-1]
-        said += [of_usual(task, methods[usual], reference, data)]
+        plain = plain_of(methods)
+        reference = methods[plain][-1]
+        said += [of_plain(task, methods[plain], reference, data)]
         said += [of_cheapest(task, methods, reference, data)]
     return [*said, *of_solvers(rows)]
 
 
-def usual_of(methods: dict[tuple, list[dict[str, Any]]]) -> tuple:
-    """Euler's quadratic steps, with the noise that the sampler mixes by default."""
+def plain_of(methods: dict[tuple, list[dict[str, Any]]]) -> tuple:
+    """Euler's quadratic steps, as in all other tables, with the sampler's default noise."""
     return next(method for method in methods if method[:2] == ("quadratic", "Euler"))
 
 
-def of_usual(
+def of_plain(
     task: str, rows: list[dict[str, Any]], reference: dict[str, Any], data: dict[str, Any]
 ) -> str:
-    """How few of the usual steps keep the quality of the most of them."""
+    """How few of the plain steps keep the quality of the most of them."""
     kept = fewest(rows, reference, data)
     assert kept is not None  # the reference keeps its own quality
     fewer = [row for row in rows if row["steps"] < kept["steps"]]
@@ -172,7 +172,7 @@ def of_usual(
         f"; {fewer[-1]['steps']} lose {listed(lost(fewer[-1], reference, data))}" if fewer else ""
     )
     return (
-        f"{task.capitalize()}: {kept['steps']} of the usual steps ({spelled(kept)}) keep the "
+        f"{task.capitalize()}: {kept['steps']} of the plainest steps ({spelled(kept)}) keep the "
         f"quality of {reference['steps']}, within the interval{cost}.{doubt(kept, reference, data)}"
     )
 

@@ -182,7 +182,7 @@ def test_sentences_say_how_few_steps_keep_the_quality():
     said = fewer_steps_words.sentences([data, *euler_rows, *other])
     # Ten steps happen to keep it, but 25 do not: fifty are the fewest that can be relied on.
     assert said[0] == (
-        "No wish: 50 of the usual steps (quadratic Euler) keep the quality of 100, within the "
+        "No wish: 50 of the plainest steps (quadratic Euler) keep the quality of 100, within the "
         "interval; 25 lose FID. The interval leaves room for a loss of 0 % in FID."
     )
     assert said[1] == (
