@@ -74,7 +74,8 @@ def projflow(
             ``projflow-lite reproduce ablations`` and book/results/ablations.json.
         eta: share of fresh noise. "paper" is :math:`1 - \sigma_{t + \Delta t}`, the next time
             itself. It does not shrink with the step, so samples stay too close to the mean however
-            many steps there are.
+            many steps there are. Steps that look half of themselves ahead lose nothing, at any
+            share: see `multistep`, and "Look ahead" in notebook 04.
             "ddpm" is :math:`1 - \mathrm{SNR}_t / \mathrm{SNR}_{t + \Delta t}` with
             :math:`\mathrm{SNR}_t = t^2 / (1 - t)^2`: with implied noise a step is then one of
             diffusion's ancestral sampling. Or a number (0 adds none: smoother still, but feet

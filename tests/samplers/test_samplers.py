@@ -4,11 +4,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import sympy
 import torch
 
 import projflow_lite as pf
 from projflow_lite import equations
 from projflow_lite.samplers import euler, flow_times, guided, projflow
+from projflow_lite.samplers.euler import lead
 from projflow_lite.samplers.projflow import fresh_share
 
 MEAN = torch.randn(12, 22, 3, generator=torch.Generator().manual_seed(1), dtype=torch.float64)
@@ -105,6 +107,26 @@ def test_looking_ahead_gives_the_spread_back():
     """What a step loses by noising the mean again, the next one's extrapolation finds missing."""
     for steps in (10, 20, 200):
         assert spread_away_from_the_pin(steps=steps) == pytest.approx(DATA_STD, rel=0.05)
+
+
+def test_half_a_step_ahead_is_what_the_spread_needs():
+    """Notebook 04: where variance settles near t = 1, as a function of how far a step looks ahead.
+
+    A step is x' = x - u w x + h u (x - before) + noise of variance c² w eta, with eta = u (2 - u).
+    """
+    u, w, h, c, V, C = sympy.symbols("u w h c V C", positive=True)  # C: covariance of neighbours
+    first, second, noise = 1 - u * w + h * u, -h * u, c**2 * w * u * (2 - u)
+    settled = sympy.solve(
+        [
+            (first**2 + second**2) * V + 2 * first * second * C + noise - V,
+            first * V + second * C - C,
+        ],
+        [V, C],
+    )[V]
+    limit = sympy.limit(settled, w, 0)
+    assert sympy.simplify(limit - c**2 * (2 - u) / (2 - 2 * h * u)) == 0
+    assert sympy.simplify(limit.subs(h, sympy.Rational(1, 2)) - c**2) == 0
+    assert lead(0.5, 0.501) / 0.001 == pytest.approx(0.5, abs=1e-3)
 
 
 def test_diffusions_share_of_fresh_noise_keeps_the_spread():
