@@ -27,7 +27,7 @@ def test_scrubbing_shows_every_step(jupyter_lab, write_notebook):
     for _ in range(4):
         lab.page.keyboard.press("ArrowRight")
     lab.wait_for("scope.step.value == 9", seconds=30)
-    lab.wait_for("'t = 0.938' in scope.said.words", seconds=30)
+    lab.wait_for("'t = 0.984' in scope.said.words", seconds=30)
     lab.page.wait_for_timeout(500)
     assert held.evaluate(BLUE) != before[0]
     assert lab.ask("bytes(scope.viewer.data).hex()[:4000]") != before[1]
