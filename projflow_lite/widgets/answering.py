@@ -29,9 +29,13 @@ class Later:
         except RuntimeError:  # a plain script or a test: no loop to wait in
             function(*arguments)
             return
+        self.forget()
+        self._waiting = loop.call_later(self.seconds, function, *arguments)
+
+    def forget(self) -> None:
+        """Call nothing of what still waits."""
         if self._waiting is not None:
             self._waiting.cancel()
-        self._waiting = loop.call_later(self.seconds, function, *arguments)
 
 
 def status_line(text: str, kind: str = "") -> str:

@@ -35,6 +35,7 @@ PROMPTS = (
 )
 DRAW_FIRST = "Draw a path in the left picture, or choose a shape below it."
 SETTLE = 0.01  # seconds to wait for more changes, so that many quick ones make one motion
+AFTER = 0.04  # seconds from a picture to its words: the page paints the picture first
 
 
 class WishStudio(widgets.VBox):
@@ -82,7 +83,7 @@ class WishStudio(widgets.VBox):
         self.motion: Motion | None = None
         self.error: Exception | None = None
         self.runs = 0
-        self._later = Later(SETTLE)
+        self._later, self._told = Later(SETTLE), Later(AFTER)
         self.joint = widgets.Dropdown(
             options=[(name.replace("_", " "), name) for name in joints],
             value=joint,
@@ -170,12 +171,17 @@ class WishStudio(widgets.VBox):
             return
         self.motion, self.error = motion, None
         self.runs += 1
-        self._show_reference()
         # What was warned of, a word the prior never saw for example, would be lost in a log.
         said = dict.fromkeys(str(warning.message) for warning in heard)
-        self._say(" · ".join([report(motion, seconds), *said]))
+        self._told.call(self._tell, " · ".join([report(motion, seconds), *said]))
+
+    def _tell(self, words: str) -> None:
+        """What follows a picture: words, and the body behind the next drawing."""
+        self._show_reference()
+        self._say(words)
 
     def _say(self, text: str, kind: str = "") -> None:
+        self._told.forget()  # older words
         self.status.value = status_line(text, kind)
 
 
