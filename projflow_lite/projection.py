@@ -31,7 +31,7 @@ from projflow_lite.projection_checks import (
     check_rows,
     check_solved,
     check_variance,
-    holds,
+    lowest,
 )
 from projflow_lite.row_blocks import independent_rows, name_nearest
 from projflow_lite.skeleton import EDGES, N_JOINTS, number_array, shown
@@ -158,7 +158,7 @@ class Projector:
         for _ in range(self.solves - 1 if self.refines else 0):
             more = self.solve(self.left(x, z, variance), variance)
             x, z = self.moved(x, more), z + more
-        if variance is not None and not holds((variance > self.firm) | self.hard):
+        if variance is not None and not lowest(variance.masked_fill(self.hard, 1)) > self.firm:
             check_solved(self.left(x, z, variance) * (variance < torch.inf), self.firm)
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.pins.expand(len(x), -1)

@@ -92,7 +92,7 @@ def check_variance(variance: torch.Tensor, rows: int, motions: int) -> torch.Ten
     if variance.shape[-1] != rows:
         raise ValueError(f"Projector: {variance.shape[-1]} variances, {rows} rows")
     check_batch(variance, motions, "variances")
-    if not holds(variance >= 0):
+    if not lowest(variance) >= 0:  # nor is NaN
         raise ValueError("Projector: a variance is negative or not a number")
     return variance
 
@@ -114,6 +114,11 @@ def as_targets(y: ArrayLike | torch.Tensor, rows: int) -> torch.Tensor:
     if not wanted or not holds(torch.isfinite(y)):
         raise ValueError(f"Projector: expected (..., {rows}) finite targets")
     return y
+
+
+def lowest(values: torch.Tensor) -> float:
+    """The smallest of a tensor, NaN if one is in it; one pass, and no table of truths."""
+    return float("inf") if values.is_meta or values.numel() == 0 else float(values.detach().amin())
 
 
 def holds(condition: torch.Tensor) -> bool:

@@ -50,7 +50,7 @@ def ddnm(
     x_t, spread = x0, torch.as_tensor(noise_std, dtype=x0.dtype)
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)
-        x1_hat, noise = x_t + (1 - t) * v, x_t - t * v
+        x1_hat, noise = torch.add(x_t, v, alpha=1 - t), torch.sub(x_t, v, alpha=t)
         x1 = project(x1_hat, t)
         share = fresh_share(eta, t, t_next)
         if share > 0 and t_next < 1:

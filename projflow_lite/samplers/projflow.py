@@ -98,9 +98,9 @@ def projflow(
     x_t, spread = x0, torch.as_tensor(noise_std, dtype=x0.dtype)
     for t, t_next in itertools.pairwise(times):
         v = velocity(x_t, t, text)
-        x1_hat = x_t + (1 - t) * v  # eq. 5
+        x1_hat = torch.add(x_t, v, alpha=1 - t)  # eq. 5
         x1 = project(x1_hat, t)  # eq. 6-8
-        mixed = x0 if noise == "original" else x_t - t * v
+        mixed = x0 if noise == "original" else torch.sub(x_t, v, alpha=t)
         share = fresh_share(eta, t, t_next)
         if share > 0 and t_next < 1:
             fresh = torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
