@@ -15,7 +15,7 @@ import torch
 
 from projflow_lite.prior.model import Text
 from projflow_lite.samplers.options import check_callback
-from projflow_lite.samplers.projflow import Step, Velocity, fresh_share
+from projflow_lite.samplers.projflow import Step, Velocity, fresh_share, mix
 from projflow_lite.samplers.step import ProjectionStep
 
 
@@ -53,9 +53,8 @@ def ddnm(
         x1_hat, noise = torch.add(x_t, v, alpha=1 - t), torch.sub(x_t, v, alpha=t)
         x1 = project(x1_hat, t)
         share = fresh_share(eta, t, t_next)
-        if share > 0 and t_next < 1:
-            fresh = torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
-            noise = torch.addcmul((1 - share) ** 0.5 * noise, share**0.5 * spread, fresh)
+        if t_next < 1:
+            noise = mix(noise, share, spread, generator)
         if callback:
             callback(Step(t, t_next, x_t, x1_hat, x1, residual=project.residual(x1)))
         x_t = torch.lerp(noise, x1, t_next)

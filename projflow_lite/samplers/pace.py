@@ -27,7 +27,7 @@ class Pace(NamedTuple):
     power: int = 2
     solver: str = "euler"
 
-    def times(self, steps: int | Sequence[float] | None) -> list[float]:
+    def times(self, steps: int | Sequence[float] | None = None) -> list[float]:
         """Flow times of so many steps, or of as many as usual; or the given times."""
         return flow_times(self.steps if steps is None else steps, self.power)
 

@@ -102,9 +102,8 @@ def projflow(
         x1 = project(x1_hat, t)  # eq. 6-8
         mixed = x0 if noise == "original" else torch.sub(x_t, v, alpha=t)
         share = fresh_share(eta, t, t_next)
-        if share > 0 and t_next < 1:
-            fresh = torch.randn(x0.shape, generator=generator, dtype=x0.dtype)
-            mixed = torch.addcmul((1 - share) ** 0.5 * mixed, share**0.5 * spread, fresh)  # eq. 9
+        if t_next < 1:  # the last step has no room for noise
+            mixed = mix(mixed, share, spread, generator)
         if callback:
             step = Step(t, t_next, x_t, x1_hat, x1)
             if isinstance(project, ProjectionStep):
@@ -113,6 +112,16 @@ def projflow(
             callback(step)
         x_t = torch.lerp(mixed, x1, t_next)  # eq. 10
     return x_t
+
+
+def mix(
+    noise: torch.Tensor, share: float, spread: torch.Tensor, generator: torch.Generator | None
+) -> torch.Tensor:
+    """Noise with a share of fresh noise, whose standard deviation is `spread` (eq. 9)."""
+    if share == 0:
+        return noise
+    fresh = torch.randn(noise.shape, generator=generator, dtype=noise.dtype)
+    return torch.addcmul((1 - share) ** 0.5 * noise, share**0.5 * spread, fresh)
 
 
 def fresh_share(eta: Callable[[float], float] | float | str, t: float, t_next: float) -> float:

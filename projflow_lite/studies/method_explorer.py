@@ -14,7 +14,8 @@ from data_synth import held_out
 from projflow_lite.constraints import Wish, pin
 from projflow_lite.motion import Motion
 from projflow_lite.prior import Prior
-from projflow_lite.samplers import flow_times, sample
+from projflow_lite.samplers import sample
+from projflow_lite.samplers.pace import Pace
 from projflow_lite.samplers.projflow import Velocity
 from projflow_lite.scores import bone_length_error, foot_skating, worst_acceleration
 from projflow_lite.skeleton import CONTROLLED
@@ -24,7 +25,6 @@ from projflow_lite.studies.control_ways import OURS, RIVALS, TRAINED
 from projflow_lite.widgets import Viewer
 from projflow_lite.widgets.answering import status_line
 
-STEPS = 25
 SEARCH = {"iterations": 20, "solver_steps": 8}
 """The search for noise, short enough to wait for."""
 
@@ -154,7 +154,7 @@ class MethodExplorer(widgets.VBox):
     def _sample(self, prior: Velocity, rival: Rival) -> Motion:
         common: dict[str, Any] = {"prompt": self.clip.prompt, "frames": self.frames}
         # The same steps for all, as in `projflow_lite.studies.control`.
-        common |= {"batch": self.batch, "steps": flow_times(STEPS), "solver": "euler"}
+        common |= {"batch": self.batch, "steps": Pace().times(), "solver": "euler"}
         if not rival.method:
             return sample(prior, None, **common)
         options = dict(rival.options) | (SEARCH if rival.method == "dno" else {})

@@ -266,12 +266,12 @@ def nearest_splines(positions: NDArray) -> NDArray:
 def generate(prior: Velocity, like: Sample, steps: int, seed: int, bar: tqdm) -> Sample:
     """A motion for each caption of a sample, of the length of its clip."""
     made: list[NDArray] = []
+    times = flow_times(steps)
     for start in range(0, len(like.captions), BATCH):
         texts = like.captions[start : start + BATCH]
         frames = len(like.positions[start])
         # Other noise for every batch of every repetition, the same for every number of steps.
         noise = 10_000 * seed + start
-        times = flow_times(steps)
         motion = sample(prior, None, texts, frames, times, noise, batch=len(texts), solver="euler")
         made.extend(motion.positions)
         bar.update(len(texts))
