@@ -176,7 +176,9 @@ def sample(
         metric: of the projection, see `Projector`; or "moving" or a `MovingMetric`, which spreads
             keyframes over time by itself, without guides. For projflow.
         dtype: of the sampler's arithmetic: torch.float32 or torch.float64.
-        options: further arguments of the method, see its file in ``samplers/``.
+        options: further arguments of the method, see its file in ``samplers/``. With projflow one
+            differs from there: `eta` is 0 unless given, so that no fresh noise is drawn; ``eta=
+            "paper"`` draws as much as the paper.
 
     Raises:
         ValueError: for a wish that does not fit the motion or contradicts itself, an unknown
@@ -197,6 +199,7 @@ def sample(
     pace = QUICK if wish is None and not takes_goals else pace
     check_solver(solver, method, pace)
     times = pace.times(steps)
+    options = ({} if pace.eta is None else {"eta": pace.eta}) | options
     space: Any = prior if hasattr(prior, "unproject") else Metres()
     noise_std = torch.as_tensor(getattr(prior, "noise_std", 1.0), dtype=dtype)
     aim: Any = None

@@ -21,20 +21,23 @@ class Pace(NamedTuple):
         steps: how many.
         power: of the spacing, see `flow_times`.
         solver: a name of `SOLVERS`.
+        eta: share of fresh noise, for a method that mixes some; None for the method's own.
     """
 
     steps: int = 25
     power: int = 2
     solver: str = "euler"
+    eta: float | None = None
 
     def times(self, steps: int | Sequence[float] | None = None) -> list[float]:
         """Flow times of so many steps, or of as many as usual; or the given times."""
         return flow_times(self.steps if steps is None else steps, self.power)
 
 
-QUICK = Pace(10, 3, "multistep")
-"""Ten calls of the network that keep the quality of a hundred, without a wish and with one: see
-``projflow-lite reproduce fewer-steps``, which compares spacings, solvers and noise."""
+QUICK = Pace(10, 3, "multistep", eta=0.0)
+"""Ten calls of the network that keep the quality of a hundred, without a wish and with one, and no
+fresh noise: see ``projflow-lite reproduce fewer-steps``, which compares spacings, solvers and
+noise."""
 
 SOLVERS: dict[str, Callable[[Velocity, Sequence[float]], Velocity]] = {
     "euler": lambda velocity, times: velocity,

@@ -25,8 +25,8 @@ from projflow_lite.studies.control_ways import OURS, RIVALS, TRAINED
 from projflow_lite.widgets import Viewer
 from projflow_lite.widgets.answering import status_line
 
-SEARCH = {"iterations": 20, "solver_steps": 8}
-"""The search for noise, short enough to wait for."""
+USUAL = {"projflow": {"eta": "paper"}, "dno": {"iterations": 20, "solver_steps": 8}}
+"""Options by method: the paper's noise, and a search for noise short enough to wait for."""
 
 MOVING = OURS[0]._replace(name="projflow, moving metric")
 WAYS = {rival.name: rival for rival in (*RIVALS[:2], MOVING, *RIVALS[2:], *TRAINED)}
@@ -153,11 +153,11 @@ class MethodExplorer(widgets.VBox):
 
     def _sample(self, prior: Velocity, rival: Rival) -> Motion:
         common: dict[str, Any] = {"prompt": self.clip.prompt, "frames": self.frames}
-        # The same steps for all, as in `projflow_lite.studies.control`.
+        # The same steps for all, and the paper's noise, as in `projflow_lite.studies.control`.
         common |= {"batch": self.batch, "steps": Pace().times(), "solver": "euler"}
         if not rival.method:
             return sample(prior, None, **common)
-        options = dict(rival.options) | (SEARCH if rival.method == "dno" else {})
+        options = dict(rival.options) | USUAL.get(rival.method, {})
         return sample(prior, self.wish, method=rival.method, **common, **options)
 
     def _numbers(self, motion: Motion, seconds: float) -> tuple[float, ...]:

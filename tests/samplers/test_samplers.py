@@ -51,7 +51,7 @@ def test_every_step_is_the_equations(noise):
     """Replay each step in numpy from what the callback saw, drawing the same fresh noise."""
     wish, steps = pf.pin("head", [2, 9], [[1, 2, 3], [4, 5, 6]]), []
     common = {"callback": steps.append, "dtype": torch.float64, "seed": 5}
-    sample(wish, noise=noise, solver="euler", **common)
+    sample(wish, noise=noise, eta="paper", solver="euler", **common)
     random = torch.Generator().manual_seed(5)
     shape = (1, 12, 22, 3)
     x0 = NOISE_STD * torch.randn(shape, generator=random, dtype=torch.float64).numpy()
@@ -100,13 +100,16 @@ def test_fresh_noise_narrows_the_samples():
     Noising the mean again, instead of a draw around it, loses the spread that the draw would have.
     """
     for steps in (20, 200):
-        assert spread_away_from_the_pin(steps=steps, solver="euler") < 0.85 * DATA_STD
+        narrow = spread_away_from_the_pin(eta="paper", steps=steps, solver="euler")
+        assert narrow < 0.85 * DATA_STD
 
 
 def test_looking_ahead_gives_the_spread_back():
     """What a step loses by noising the mean again, the next one's extrapolation finds missing."""
     for steps in (10, 20, 200):
-        assert spread_away_from_the_pin(steps=steps) == pytest.approx(DATA_STD, rel=0.05)
+        for eta in (0.0, "paper"):
+            spread = spread_away_from_the_pin(eta=eta, steps=steps)
+            assert spread == pytest.approx(DATA_STD, rel=0.05)
 
 
 def test_half_a_step_ahead_is_what_the_spread_needs():
@@ -190,6 +193,13 @@ def test_every_method_has_its_pace():
         calls[name] = list(asked)
     assert calls["free"] == calls["projflow"] == flow_times(10, 3)[:-1]
     assert calls["ddnm"] == calls["gmd"] == flow_times(25)[:-1]
+
+
+def test_without_being_asked_no_noise_is_fresh():
+    wish = pf.pin("head", 3, [0, 1, 2])
+    usual, drawn = sample(wish).positions, sample(wish, eta="paper").positions
+    np.testing.assert_array_equal(usual, sample(wish, eta=0.0).positions)
+    assert np.abs(usual - drawn).max() > 1e-3
 
 
 def test_a_solver_is_chosen_by_name():
