@@ -27,7 +27,7 @@ import torch
 
 import projflow_lite as pf
 from projflow_lite.constraints import Rows
-from projflow_lite.projection import kinematic_joint_metric
+from projflow_lite.joint_metric import kinematic_joint_metric
 from projflow_lite.samplers import Guides
 from projflow_lite.skeleton import JOINTS, N_JOINTS
 

@@ -28,7 +28,7 @@ from scipy.sparse.linalg import cg, spsolve
 
 import projflow_lite as pf
 from projflow_lite import equations
-from projflow_lite.projection import kinematic_joint_metric
+from projflow_lite.joint_metric import kinematic_joint_metric
 from projflow_lite.skeleton import EDGES, N_JOINTS
 
 FRAMES, BATCHES = (20, 60, 196, 784), (1, 16, 64)

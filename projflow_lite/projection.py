@@ -14,14 +14,14 @@ from __future__ import annotations
 import math
 import warnings
 from copy import copy
+from functools import cached_property
 
 import numpy as np
 import torch
 from numpy.typing import ArrayLike, NDArray
-from scipy import sparse
 
 from projflow_lite.constraints import Rows, is_coordinate
-from projflow_lite.equations import joint_metric, kinematic_laplacian
+from projflow_lite.joint_metric import of_metric
 from projflow_lite.projection_checks import (
     as_targets,
     check_batch,
@@ -31,19 +31,11 @@ from projflow_lite.projection_checks import (
     check_rows,
     check_solved,
     check_variance,
-    lowest,
+    firmest_of,
 )
-from projflow_lite.row_blocks import independent_rows, name_nearest
-from projflow_lite.skeleton import EDGES, N_JOINTS, number_array, shown
-
-
-def kinematic_joint_metric(w_kin: float = 10.0, ridge: float = 1.0) -> NDArray:
-    r"""The skeleton's metric on one frame and axis, :math:`R_J = w L + \lambda I` (eq. 50)."""
-    return joint_metric(kinematic_laplacian(EDGES, N_JOINTS), w_kin, ridge)
-
-
-METRICS = {"kinematic": kinematic_joint_metric(), "euclidean": np.eye(N_JOINTS)}
-"""Joint metrics by name."""
+from projflow_lite.row_blocks import independent_rows, name_nearest, numbered
+from projflow_lite.skeleton import N_JOINTS
+from projflow_lite.sparse_map import SparseMap, entries_of
 
 NEARLY_DEPENDENT = 1e3
 """Condition number of the rows above which a person is warned."""
@@ -88,7 +80,7 @@ class Projector:
         check_device(device)
         rows = check_rows(rows, dtype)
         self.given, self.dtype = len(rows.y), dtype
-        covariance = np.linalg.inv(check_metric(metric))
+        covariance, spread, _ = of_metric(metric)
         self.keep, self.condition, worst, groups, observed = independent_rows(rows, covariance)
         if self.condition > NEARLY_DEPENDENT:
             warnings.warn(
@@ -107,33 +99,37 @@ class Projector:
             own = slice(first, first + block.size)
             self.blocks.append(Block(dense, rows.variance[block], own, inner, device))
             first += block.size
-        rows = Rows(rows.A[order], rows.y[order], rows.variance[order])
         self.order = torch.as_tensor(order, device=device)
         self.frames = rows.A.shape[1] // (N_JOINTS * 3)
-        self.A = SparseMap(rows.A, inner, device)
+        row, column, value = entries_of(rows.A, order)
+        self.A = SparseMap(row, column, value, len(order), inner, device)
         # Of a frame, only the coordinates that some row reads are ever pulled.
-        frame, coordinate = np.divmod(rows.A.indices, N_JOINTS * 3)
-        pulled, place = np.unique(coordinate, return_inverse=True)
-        columns = rows.A.copy()
-        columns.indices = frame * len(pulled) + place
-        columns.resize(len(rows.y), self.frames * len(pulled))
-        self.back = SparseMap(columns.T.tocsr(), inner, device)
-        spread = np.kron(covariance, np.eye(3))[pulled]
-        self.covariance = torch.as_tensor(spread, dtype=inner, device=device)
-        self.y = torch.as_tensor(rows.y, dtype=inner, device=device)
-        self.noise = torch.as_tensor(rows.variance, dtype=inner, device=device)
-        self.hard = torch.as_tensor(rows.variance == 0, device=device)
+        frame, coordinate = np.divmod(column, N_JOINTS * 3)
+        pulled, place = numbered(coordinate, N_JOINTS * 3)
+        column, size = frame * len(pulled) + place, self.frames * len(pulled)
+        self.back = SparseMap(column, row, value, size, inner, device)
+        self.covariance = torch.as_tensor(spread[pulled], dtype=inner, device=device)
+        self.y = torch.as_tensor(rows.y[order], dtype=inner, device=device)
+        self.noise = torch.as_tensor(rows.variance[order], dtype=inner, device=device)
+        self.hard = torch.as_tensor(rows.variance[order] == 0, device=device)
         self.firm = math.sqrt(torch.finfo(inner).eps)
-        combined = (rows.variance == 0) & ~is_coordinate(rows.A)
+        combined = ((rows.variance == 0) & ~is_coordinate(rows.A))[self.keep]
         self.refines = self.condition > WELL_CONDITIONED or bool(combined.any())
 
-    def project(self, x1_hat: torch.Tensor, variance: torch.Tensor | None = None) -> torch.Tensor:
+    def project(
+        self,
+        x1_hat: torch.Tensor,
+        variance: torch.Tensor | None = None,
+        firmest: float | None = None,
+    ) -> torch.Tensor:
         """Move a motion, or a batch, the shortest way onto the rows.
 
         Args:
             x1_hat: ``(..., frames, 22, 3)`` metres, in the projector's precision and on its device.
             variance: ``(m,)`` or ``(batch, m)`` square metres, instead of that of the rows:
-                0 makes a row hard, infinity leaves it out. Hard rows stay hard.
+                0 makes a row hard, infinity leaves it out. Hard rows stay hard, whatever it says.
+            firmest: the smallest variance of a soft row, or less, of a variance that is known to be
+                0 for hard rows: then nobody looks at it again.
 
         Returns:
             The same shape. Pinned coordinates are bit-exact; gradients flow through. Where a motion
@@ -149,7 +145,10 @@ class Projector:
         check_batch(self.y, len(x), "targets")
         if variance is not None:
             variance = check_variance(variance, self.given, len(x)).to(self.y)
-            variance = variance.index_select(-1, self.order).masked_fill(self.hard, 0.0)
+            variance = variance.index_select(-1, self.order)
+            if firmest is None:
+                firmest = firmest_of(variance.masked_fill(self.hard, torch.inf))
+                variance = variance.masked_fill(self.hard, 0.0)
             variance = variance.expand(len(x), -1)
         z = self.solve(self.y - self.A(x), variance)
         x = self.moved(x, z)
@@ -158,7 +157,7 @@ class Projector:
         for _ in range(self.solves - 1 if self.refines else 0):
             more = self.solve(self.left(x, z, variance), variance)
             x, z = self.moved(x, more), z + more
-        if variance is not None and not lowest(variance.masked_fill(self.hard, 1)) > self.firm:
+        if variance is not None and firmest is not None and firmest <= self.firm:
             check_solved(self.left(x, z, variance) * (variance < torch.inf), self.firm)
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.pins.expand(len(x), -1)
@@ -184,7 +183,8 @@ class Projector:
 
     def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
         r"""Solve :math:`(A R^{-1} A^\top + \Sigma) z = r`, block by block, for ``(batch, m)``."""
-        return torch.cat([residual[:, :0], *(b.solve(residual, variance) for b in self.blocks)], 1)
+        parts = [block.solve(residual, variance) for block in self.blocks]
+        return parts[0] if len(parts) == 1 else torch.cat([residual[:, :0], *parts], 1)
 
     def moved(self, x: torch.Tensor, z: torch.Tensor) -> torch.Tensor:
         r"""Add :math:`R^{-1} A^\top z`: put ``(batch, m)`` on the joints, and let it spread."""
@@ -254,12 +254,17 @@ class Block:
         dtype: torch.dtype,
         device: str | torch.device,
     ) -> None:
-        blocks, size = variance.shape
-        inverse = np.linalg.inv(dense + variance[..., None] * np.eye(size))
-        self.own, self.shape = own, (size, blocks)
+        self.own, self.shape = own, variance.shape[::-1]
+        self.observed, self.variance = dense, variance
         rows_first = np.moveaxis(dense, 0, -1)
         self.dense = torch.tensor(rows_first, dtype=dtype, device=device)
-        self.inverse = torch.as_tensor(inverse, dtype=dtype, device=device)
+
+    @cached_property
+    def inverse(self) -> torch.Tensor:
+        """Of every block with the variance of its rows, ``(blocks, size, size)``."""
+        noise = self.variance[..., None] * np.eye(len(self.dense))
+        inverse = np.linalg.inv(self.observed + noise)
+        return torch.as_tensor(inverse, dtype=self.dense.dtype, device=self.dense.device)
 
     def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
         """Solve every block for ``(batch, m)`` residuals, ``(batch, own rows)``.
@@ -317,48 +322,3 @@ def solve_one_by_one(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -
     mask = active[..., :, None] & active[..., None, :]
     S = C * mask + torch.diag_embed(torch.where(active, variance, 1.0))
     return (torch.linalg.solve(S, r) * active).movedim(-1, 0)
-
-
-class SparseMap:
-    """A sparse matrix applied to the last dimension of a dense batch, with gradients.
-
-    Written as gather, multiply, scatter-add because torch's own sparse product takes only one
-    layout per device; three lines serve them all.
-    """
-
-    def __init__(
-        self, matrix: sparse.spmatrix, dtype: torch.dtype, device: str | torch.device
-    ) -> None:
-        in_rows = sparse.csr_matrix(matrix)
-        self.shape = in_rows.shape
-        row = np.repeat(np.arange(self.shape[0]), np.diff(in_rows.indptr))
-        self.one_each = np.array_equal(row, np.arange(self.shape[0]))
-        self.row = torch.as_tensor(row, device=device).long()
-        self.column = torch.as_tensor(in_rows.indices, device=device).long()
-        self.value = torch.as_tensor(in_rows.data, dtype=dtype, device=device)
-
-    def __call__(self, x: torch.Tensor) -> torch.Tensor:
-        """Return ``matrix @ x`` for every vector of the batch ``(batch, columns)``."""
-        products = x.index_select(1, self.column) * self.value  # x[:, column] is 5 times slower
-        if self.one_each:
-            return products
-        return x.new_zeros(len(x), self.shape[0]).index_add(1, self.row, products)
-
-
-def check_metric(metric: str | ArrayLike) -> NDArray:
-    """The joint metric as a positive definite ``(22, 22)`` array, or an error that says why not."""
-    if isinstance(metric, str):
-        if metric not in METRICS:
-            known = ", ".join(METRICS)
-            raise ValueError(f"Projector: metric is one of {known}, not {shown(metric)}")
-        return METRICS[metric].copy()
-    R_J = number_array(metric, "Projector: the metric").astype(np.float64)
-    if R_J.shape != (N_JOINTS, N_JOINTS) or not np.isfinite(R_J).all():
-        raise ValueError(f"Projector: a metric is a symmetric ({N_JOINTS}, {N_JOINTS}) matrix")
-    if not np.allclose(R_J, R_J.T, rtol=1e-10, atol=1e-12 * np.abs(R_J).max()):
-        raise ValueError("Projector: the metric is not symmetric")
-    eigenvalues = np.linalg.eigvalsh(R_J)
-    # A negative eigenvalue's rounding is that of the largest.
-    if eigenvalues[0] <= 1e-13 * eigenvalues[-1]:
-        raise ValueError("Projector: the metric is not positive definite")
-    return R_J

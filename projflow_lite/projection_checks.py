@@ -29,7 +29,7 @@ def check_rows(rows: Rows, dtype: torch.dtype) -> Rows:
         )
     if A.shape[1] == 0 or A.shape[1] % (N_JOINTS * 3):
         raise ValueError(f"Projector: A has {A.shape[1]} columns, not a multiple of {N_JOINTS * 3}")
-    in_rows = sparse.csr_matrix(A, copy=True)
+    in_rows = A.copy() if isinstance(A, sparse.csr_matrix) else sparse.csr_matrix(A)
     entries = in_rows.data
     for name, values in (("A", entries), ("y", y), ("variance", variance)):
         number_array(values, f"Projector: {name}")
@@ -84,7 +84,7 @@ def check_batch(values: torch.Tensor, motions: int, what: str) -> None:
 
 
 def check_variance(variance: torch.Tensor, rows: int, motions: int) -> torch.Tensor:
-    """Refuse variances that are no numbers, negative, or not one for each row."""
+    """Refuse variances that are not one for each row."""
     if not isinstance(variance, torch.Tensor):
         raise ValueError(f"Projector: variance is a torch tensor here, not {shown(variance)}")
     if variance.ndim not in (1, 2):
@@ -92,9 +92,15 @@ def check_variance(variance: torch.Tensor, rows: int, motions: int) -> torch.Ten
     if variance.shape[-1] != rows:
         raise ValueError(f"Projector: {variance.shape[-1]} variances, {rows} rows")
     check_batch(variance, motions, "variances")
-    if not lowest(variance) >= 0:  # nor is NaN
-        raise ValueError("Projector: a variance is negative or not a number")
     return variance
+
+
+def firmest_of(variance: torch.Tensor) -> float:
+    """The smallest variance, or an error if it is negative or not a number."""
+    smallest = lowest(variance)
+    if not smallest >= 0:  # nor is NaN
+        raise ValueError("Projector: a variance is negative or not a number")
+    return smallest
 
 
 def check_solved(left: torch.Tensor, tolerance: float) -> None:

@@ -186,8 +186,9 @@ def weighted_rows(
     data = np.broadcast_to(weights, (m, k)).astype(np.float64).ravel()
     starts = np.arange(0, m * k + 1, k)
     A = sparse.csr_matrix((data, columns.ravel(), starts), (m, frames * N_JOINTS * 3))
-    A.sum_duplicates()
-    A.eliminate_zeros()
+    if k > 1:
+        A.sum_duplicates()
+        A.eliminate_zeros()
     return Rows(A, np.asarray(y, dtype=np.float64), np.full(m, float(std) ** 2))
 
 

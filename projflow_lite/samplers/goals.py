@@ -18,8 +18,8 @@ from functools import lru_cache
 import torch
 
 from projflow_lite.constraints import Rows, Wish, is_coordinate
-from projflow_lite.projection import SparseMap
 from projflow_lite.skeleton import FPS, joint_index
+from projflow_lite.sparse_map import SparseMap
 
 Goal = Callable[[torch.Tensor], torch.Tensor]
 
@@ -47,7 +47,7 @@ def reach(wish: Wish, p: float = 1.0) -> Goal:
     @lru_cache(maxsize=4)
     def prepared(frames: int) -> tuple[SparseMap, torch.Tensor, torch.Tensor]:
         rows = wish.rows(frames)
-        return SparseMap(rows.A, torch.float64, "cpu"), torch.as_tensor(rows.y), groups_of(rows)
+        return SparseMap.of(rows.A, torch.float64), torch.as_tensor(rows.y), groups_of(rows)
 
     def goal(x: torch.Tensor) -> torch.Tensor:
         A, y, group = prepared(x.shape[1])

@@ -13,14 +13,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from scipy import sparse
 
-from projflow_lite.constraints import Rows, coordinate_rows, is_coordinate
-from projflow_lite.equations import influence_weights, marginal_variance
+from projflow_lite.constraints import Rows, is_coordinate
+from projflow_lite.equations import influence_weights
+from projflow_lite.joint_metric import of_metric
+from projflow_lite.row_blocks import numbered
 from projflow_lite.skeleton import N_JOINTS, shown
 
 
@@ -79,6 +83,25 @@ class GuideSettings:
             )
 
 
+class Halo(NamedTuple):
+    """Which guides act around the keyframes at one radius; tensors ``(m + guides,)``.
+
+    Attributes:
+        parts: by what the trust of the frame is divided for this row; 1 for rows of the wish.
+        start: what `r` over the trust is added to: minus `r`, infinity where no guide acts, and
+            the given variance for rows of the wish.
+    """
+
+    parts: torch.Tensor
+    start: torch.Tensor
+
+
+@lru_cache(maxsize=8)
+def shares(metric: bytes, form: str) -> NDArray:
+    """Weights of the joints (eq. 51) of a joint metric, worked out once for each."""
+    return influence_weights(np.frombuffer(metric).reshape(N_JOINTS, N_JOINTS), form)
+
+
 class Guides:
     """The guides that belong to the hard pins of a wish.
 
@@ -101,32 +124,52 @@ class Guides:
         pins = np.flatnonzero((rows.variance == 0) & is_coordinate(rows.A))
         place = between_keyframes(rows.A.indices[rows.A.indptr[pins]], self.frames)
         self.before, self.after, self.share = pins[place.before], pins[place.after], place.share
-        guides = coordinate_rows(
-            place.column, self.targets(rows.y)[len(rows.y) :], self.frames, 1.0
-        )
+        ones = np.ones(len(place.column))
         self.rows = Rows(
-            sparse.vstack([rows.A, guides.A], format="csr"),
-            np.concatenate([rows.y, guides.y]),
-            np.concatenate([rows.variance, guides.variance]),
+            with_coordinates(rows.A, place.column),
+            self.targets(rows.y),
+            np.concatenate([rows.variance, ones]),
         )
-        as_tensor = lambda value: torch.tensor(np.array(value), dtype=dtype)  # noqa: E731
+        self.distance = torch.as_tensor(place.distance)
+        self.column, (covariance, _, root) = place.column, of_metric(R_J)
+        r = np.diagonal(covariance)  # eq. 18
+        # Every row of the wish stands in these tables too, with r = 0: its variance is given.
         frame, joint = np.divmod(place.column // 3, N_JOINTS)
-        q = influence_weights(R_J, self.settings.form)
-        self.frame, self.distance = torch.as_tensor(frame), as_tensor(place.distance)
-        self.q, self.r = as_tensor(q[joint]), as_tensor(marginal_variance(R_J)[joint])
-        # Trust is shared out among joints: one takes part where any of its axes has a guide near.
-        point, of_row = np.unique(place.column // 3, return_inverse=True)
-        nearest = np.full(len(point), np.inf)
-        np.minimum.at(nearest, of_row, place.distance)
-        self.point_frame = torch.as_tensor(point // N_JOINTS)
-        self.point_distance, self.point_q = as_tensor(nearest), as_tensor(q[point % N_JOINTS])
-        # With R_J = C Cᵀ, the length of eq. 17 is that of Cᵀ times the bend: one product of all.
-        self.C = as_tensor(np.kron(np.linalg.cholesky(R_J), np.eye(3)))
-        self.given = as_tensor(rows.variance)
+        none = np.zeros(len(rows.y), dtype=int)
+        self.frame = torch.as_tensor(np.concatenate([none, frame]))
+        self.r = torch.as_tensor(np.concatenate([none, r[joint]]), dtype=dtype)
+        self.C = torch.as_tensor(root, dtype=dtype)
+        self.given = rows.variance
+        self.share_out(shares(np.asarray(R_J, float).tobytes(), self.settings.form))
 
     def __len__(self) -> int:
         """Number of guides."""
         return len(self.distance)
+
+    def share_out(self, q: NDArray) -> None:
+        """Make the halos: a joint takes part where any of its axes has a guide near.
+
+        Args:
+            q: ``(22,)`` weights of the joints.
+        """
+        c, distance, self.q = self.settings, self.distance.numpy(), q
+        # Distances are whole numbers: they are below a radius if they are below it rounded up.
+        last = min(math.ceil(c.l_max), self.frames)
+        self.smallest = min(math.ceil(c.l_min), last)
+        radius = np.arange(self.smallest, last + 1)[:, None]
+        nearest = np.full(self.frames * N_JOINTS, np.inf)
+        np.minimum.at(nearest, self.column // 3, distance)
+        near = nearest.reshape(self.frames, N_JOINTS) < radius[..., None]
+        frame, joint = np.divmod(self.column // 3, N_JOINTS)
+        parts = (near @ q).clip(min=1e-12)[:, frame] / q[joint]
+        r = self.r.numpy()[len(self.given) :]
+        start = np.where(distance < radius, -r, np.inf)
+        given = np.broadcast_to(self.given, (len(radius), len(self.given)))
+        tables = (np.ones_like(given), parts), (given, start)
+        as_rows = [torch.as_tensor(np.hstack(table), dtype=self.r.dtype) for table in tables]
+        self.halos = [Halo(*rows) for rows in zip(*as_rows, strict=True)]
+        soft = np.concatenate([self.given[self.given > 0], r * (1 / c.pi_max - 1)])
+        self.firmest = float(soft.min(initial=np.inf))
 
     def targets(self, y: NDArray) -> NDArray:
         """Targets of all rows, ``(..., m + guides)``, for targets ``(..., m)`` of the wish."""
@@ -142,36 +185,50 @@ class Guides:
         """
         c = self.settings
         radius = (1 - t) * c.l_max + t * c.l_min  # eq. 14
-        budget = self.frame_trust(x1_hat, t)
+        inverse = self.caution(x1_hat) / (self.tau(t) * c.c0)  # 1 / trust of the frame, eq. 15
         if c.form == "released":
-            budget = budget.clamp(c.pi_min, c.pi_max)
-        q_near = self.point_q * (self.point_distance < radius)
-        total = self.q.new_zeros(self.frames).index_add(0, self.point_frame, q_near)
-        budget = budget / total.clamp(min=1e-12)
-        pi = (budget.index_select(1, self.frame) * self.q).clamp(c.pi_min, c.pi_max)  # eq. 52
-        sigma2 = self.r * (1 / pi - 1)  # eq. 18, 47
-        soft = sigma2.masked_fill(self.distance >= radius, torch.inf)
-        return torch.cat([self.given.expand(len(soft), -1), soft], dim=1)
+            inverse = inverse.clamp(1 / c.pi_max, 1 / c.pi_min)
+        halo = self.halos[min(math.ceil(radius) - self.smallest, len(self.halos) - 1)]
+        inverse = inverse.index_select(1, self.frame) * halo.parts  # 1 / pi of the row, eq. 52
+        inverse = inverse.clamp(1 / c.pi_max, 1 / c.pi_min)
+        return torch.addcmul(halo.start, self.r, inverse)  # r / pi - r: eq. 18, 47
 
     def frame_trust(self, x1_hat: torch.Tensor, t: float) -> torch.Tensor:
         """Trust in the guides of each frame before it is shared out, ``(batch, frames)``."""
+        return self.tau(t) * self.settings.c0 / self.caution(x1_hat)  # eq. 15
+
+    def tau(self, t: float) -> float:
+        """Share of the trust that is left at time `t` (eq. 16)."""
+        return self.settings.tau_min + (1 - self.settings.tau_min) * (1 - t)
+
+    def caution(self, x1_hat: torch.Tensor) -> torch.Tensor:
+        """By how much the bend of each frame divides its trust, ``(batch, frames)``, 1 or more."""
         c = self.settings
-        tau = c.tau_min + (1 - c.tau_min) * (1 - t)  # eq. 16
         if self.frames < 3:
-            return torch.full_like(x1_hat[..., 0, 0], tau * c.c0)
+            return torch.ones_like(x1_hat[..., 0, 0])
         bend = x1_hat.flatten(2).diff(n=2, dim=1)
         s = torch.linalg.vector_norm(bend @ self.C, dim=2)  # eq. 17
         s = torch.cat([s[:, :1], s, s[:, -1:]], dim=1)
-        ratio = (s / middle(s, c.form)).masked_fill(s == 0, 0.0)
-        return tau * c.c0 / (1 + c.lambda_s * ratio**c.p)  # eq. 15
+        # Where most frames rest the median is 0: those that bend are not trusted at all.
+        most = torch.inf if c.lambda_s else 0.0
+        ratio = (s / middle(s, c.form)).nan_to_num(nan=0.0, posinf=most)
+        return 1 + c.lambda_s * ratio**c.p  # the denominator of eq. 15
 
 
 def middle(s: torch.Tensor, form: str) -> torch.Tensor:
     """Median along the last dimension, ``(..., 1)``; released: the lower one of an even number."""
-    rising = s.sort(dim=-1).values
-    low = (s.shape[-1] - 1) // 2
-    high = low if form == "released" else s.shape[-1] // 2
-    return (rising[..., low, None] + rising[..., high, None]) / 2
+    larger = s.topk(s.shape[-1] // 2 + 1, sorted=False).values
+    if s.shape[-1] % 2 or form == "released":
+        return larger.amin(-1, keepdim=True)
+    return larger.topk(2, largest=False, sorted=False).values.mean(-1, keepdim=True)
+
+
+def with_coordinates(A: sparse.csr_matrix, columns: NDArray) -> sparse.csr_matrix:
+    """``A``, and below it rows that read off single coordinates."""
+    data = np.concatenate([A.data, np.ones(len(columns))])
+    ends = A.indptr[-1] + np.arange(1, len(columns) + 1)
+    below = np.concatenate([A.indices, columns]), np.concatenate([A.indptr, ends])
+    return sparse.csr_matrix((data, *below), (A.shape[0] + len(columns), A.shape[1]))
 
 
 @dataclass(frozen=True)
@@ -199,7 +256,7 @@ def between_keyframes(pinned: NDArray, frames: int) -> Between:
         pinned: ``(pins,)`` columns of the pinned coordinates.
         frames: of the motion.
     """
-    coordinates, line = np.unique(pinned % (N_JOINTS * 3), return_inverse=True)
+    coordinates, line = numbered(pinned % (N_JOINTS * 3), N_JOINTS * 3)
     pin = np.full((len(coordinates), frames), -1)
     pin[line, pinned // (N_JOINTS * 3)] = np.arange(len(pinned))
     frame = np.arange(frames)

@@ -19,10 +19,10 @@ import torch
 from numpy.typing import ArrayLike
 
 from projflow_lite.constraints import Rows, Wish
-from projflow_lite.projection import SparseMap
 from projflow_lite.projection_checks import as_targets, check_batch, check_motion, check_rows
 from projflow_lite.row_blocks import blocks_of_rows, dense_blocks, independent_rows
 from projflow_lite.skeleton import N_JOINTS, shown
+from projflow_lite.sparse_map import SparseMap
 
 
 class Misfit:
@@ -50,7 +50,7 @@ class Misfit:
         rows = Rows(rows.A[keep], rows.y[keep], rows.variance[keep])
         weight = 1 / (1 + rows.variance)
         self.steepness = largest_curvature(rows, weight)
-        self.A, self.back = (SparseMap(matrix, dtype, "cpu") for matrix in (rows.A, rows.A.T))
+        self.A, self.back = (SparseMap.of(matrix, dtype) for matrix in (rows.A, rows.A.T))
         self.y, self.weight = (torch.as_tensor(v, dtype=dtype) for v in (rows.y, weight))
         self.hard = torch.as_tensor(rows.variance == 0)
 

@@ -19,11 +19,13 @@ from scipy import sparse
 
 from projflow_lite.constraints import Rows, Wish
 from projflow_lite.equations import walk_covariance
-from projflow_lite.projection import Projector, SparseMap, check_metric
+from projflow_lite.joint_metric import check_metric
+from projflow_lite.projection import Projector
 from projflow_lite.projection_checks import check_motion
 from projflow_lite.samplers.guides import GuideSettings
 from projflow_lite.samplers.step import ProjectionStep
 from projflow_lite.skeleton import FPS, N_JOINTS, shown
+from projflow_lite.sparse_map import SparseMap
 
 MOST_ENTRIES = 6000
 """Of A: the rows are solved together, which takes its square of memory and its cube of time."""
@@ -144,8 +146,8 @@ class Reach:
         walk = walk_covariance(self.frames, metric.start, metric.speed, metric.memory, FPS)
         self.sizes, self.waves = np.linalg.eigh(walk)
         self.joints = np.kron(spread / spread[0, 0], np.eye(3))
-        self.A = SparseMap(A, torch.float64, "cpu")
-        self.back = SparseMap(A.T.tocsr(), torch.float64, "cpu")
+        self.A = SparseMap.of(A, torch.float64)
+        self.back = SparseMap.of(A.T, torch.float64)
         entries = sparse.coo_matrix(A)
         self.frame, place = np.divmod(entries.col, N_JOINTS * 3)
         self.between = self.joints[np.ix_(place, place)]

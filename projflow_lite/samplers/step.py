@@ -9,7 +9,8 @@ import torch
 from numpy.typing import ArrayLike
 
 from projflow_lite.constraints import Wish
-from projflow_lite.projection import Projector, check_metric
+from projflow_lite.joint_metric import check_metric
+from projflow_lite.projection import Projector
 from projflow_lite.samplers.guides import Guides, GuideSettings
 from projflow_lite.skeleton import shown
 
@@ -49,8 +50,10 @@ class ProjectionStep:
 
     def __call__(self, x1_hat: torch.Tensor, t: float) -> torch.Tensor:
         """Project ``(batch, frames, 22, 3)``, metres, as asked for at flow time `t`."""
-        variance = self.guides.variance(x1_hat, t) if self.guides else None
-        return self.projector.project(x1_hat, variance)
+        if not self.guides:
+            return self.projector.project(x1_hat)
+        variance = self.guides.variance(x1_hat, t)
+        return self.projector.project(x1_hat, variance, self.guides.firmest)
 
     def aimed_at(self, y: ArrayLike) -> ProjectionStep:
         """The same step with other targets, one set for each motion of a batch.

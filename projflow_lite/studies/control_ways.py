@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from data_synth import Clips
 from projflow_lite.constraints import pin
+from projflow_lite.joint_metric import kinematic_joint_metric
 from projflow_lite.prior.model import Text
-from projflow_lite.projection import kinematic_joint_metric
 from projflow_lite.samplers import (
     METHODS,
     GuideSettings,

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from projflow_lite import equations as eq
+from projflow_lite.joint_metric import kinematic_joint_metric
 from projflow_lite.motion import Motion
 from projflow_lite.prior.features import mixing_matrix, mixing_of_positions
-from projflow_lite.projection import kinematic_joint_metric
 from projflow_lite.skeleton import JOINTS, N_JOINTS, bone_lengths, joint_index
 from projflow_lite.widgets import Viewer
 from projflow_lite.widgets.standing import standing_pose

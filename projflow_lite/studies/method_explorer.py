@@ -25,7 +25,10 @@ from projflow_lite.studies.control_ways import OURS, RIVALS, TRAINED
 from projflow_lite.widgets import Viewer
 from projflow_lite.widgets.answering import status_line
 
-USUAL = {"projflow": {"eta": "paper"}, "dno": {"iterations": 20, "solver_steps": 8}}
+USUAL: dict[str, dict[str, Any]] = {
+    "projflow": {"eta": "paper"},
+    "dno": {"iterations": 20, "solver_steps": 8},
+}
 """Options by method: the paper's noise, and a search for noise short enough to wait for."""
 
 MOVING = OURS[0]._replace(name="projflow, moving metric")

@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from projflow_lite.constraints import Rows, Wish
 from projflow_lite.equations import influence_weights, marginal_variance
-from projflow_lite.projection import Projector, check_metric
-from projflow_lite.samplers import Guides, GuideSettings, ProjectionStep
+from projflow_lite.joint_metric import check_metric
+from projflow_lite.projection import Projector
+from projflow_lite.samplers import GuideSettings, ProjectionStep
 from projflow_lite.skeleton import N_JOINTS
 
 PER_FRAME = 3 * N_JOINTS
@@ -52,10 +53,15 @@ class PrintedOrder:
         A.sort_indices()
         self.projector = Projector(Rows(A, rows.y, rows.variance), metric, dtype)
 
-    def project(self, x1_hat: torch.Tensor, variance: torch.Tensor | None = None) -> torch.Tensor:
+    def project(
+        self,
+        x1_hat: torch.Tensor,
+        variance: torch.Tensor | None = None,
+        firmest: float | None = None,
+    ) -> torch.Tensor:
         """Project ``(batch, frames, 22, 3)``, metres, as `Projector.project` does."""
         taken = x1_hat.flatten(-2).unflatten(-1, (3, N_JOINTS)).mT
-        return self.projector.project(taken, variance).mT.reshape(x1_hat.shape)
+        return self.projector.project(taken, variance, firmest).mT.reshape(x1_hat.shape)
 
     def aimed_at(self, y: ArrayLike) -> PrintedOrder:
         """The same rows with other targets, one set for each motion of a batch."""
@@ -82,8 +88,10 @@ class OrderAsPrinted(ProjectionStep):
         super().__init__(wish, frames, metric, dtype, guides)
         R_J = check_metric(metric)
         if self.guides:
-            taken_for = as_printed(columns_of(self.guides)) % PER_FRAME // 3
-            self.guides.r = torch.as_tensor(marginal_variance(R_J)[taken_for]).to(dtype)
+            taken_for = as_printed(self.guides.column) % PER_FRAME // 3
+            r = torch.as_tensor(marginal_variance(R_J)[taken_for]).to(dtype)
+            self.guides.r = torch.cat([torch.zeros(len(self.given), dtype=dtype), r])
+            self.guides.share_out(influence_weights(R_J, self.guides.settings.form))
             self.guides.C = torch.as_tensor(np.kron(np.eye(3), np.linalg.cholesky(R_J))).to(dtype)
         rows = self.guides.rows if self.guides else wish.rows(frames)
         self.projector = PrintedOrder(rows, metric, dtype)  # type: ignore[assignment]
@@ -108,16 +116,7 @@ class SharesAsSaid(ProjectionStep):
     ) -> None:
         super().__init__(wish, frames, metric, dtype, guides)
         if self.guides:
-            q = 1 / influence_weights(check_metric(metric))
-            points = columns_of(self.guides) // 3
-            self.guides.q = torch.as_tensor(q[points % N_JOINTS]).to(dtype)
-            self.guides.point_q = torch.as_tensor(q[np.unique(points) % N_JOINTS]).to(dtype)
-
-
-def columns_of(guides: Guides) -> NDArray:
-    """The coordinate that each guide is about, ``(guides,)``."""
-    A = guides.rows.A.tocsr()
-    return A.indices[A.indptr[A.shape[0] - len(guides) : -1]]
+            self.guides.share_out(1 / influence_weights(check_metric(metric)))
 
 
 READINGS: dict[str, Callable[..., ProjectionStep]] = {

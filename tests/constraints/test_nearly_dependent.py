@@ -7,7 +7,8 @@ import pytest
 import torch
 
 import projflow_lite as pf
-from projflow_lite.projection import NearlyDependentRows, kinematic_joint_metric
+from projflow_lite.joint_metric import kinematic_joint_metric
+from projflow_lite.projection import NearlyDependentRows
 
 
 def parallel(angle, y=(0.0, 0.0)):

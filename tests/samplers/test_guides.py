@@ -8,7 +8,8 @@ import torch
 
 import projflow_lite as pf
 from projflow_lite import equations
-from projflow_lite.projection import Projector, kinematic_joint_metric
+from projflow_lite.joint_metric import kinematic_joint_metric
+from projflow_lite.projection import Projector
 from projflow_lite.samplers import Guides, GuideSettings
 
 FRAMES = 30

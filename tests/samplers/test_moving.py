@@ -7,7 +7,7 @@ import torch
 import projflow_lite as pf
 from projflow_lite import equations as eq
 from projflow_lite.constraints import offset, pin, rows
-from projflow_lite.projection import kinematic_joint_metric
+from projflow_lite.joint_metric import kinematic_joint_metric
 from projflow_lite.samplers import (
     GuideSettings,
     MovingMetric,
