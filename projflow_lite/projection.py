@@ -14,13 +14,14 @@ from __future__ import annotations
 import math
 import warnings
 from copy import copy
-from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 import torch
 from numpy.typing import ArrayLike, NDArray
 
 from projflow_lite.constraints import Rows, is_coordinate
+from projflow_lite.elimination import Block, axis_by_axis
 from projflow_lite.joint_metric import of_metric
 from projflow_lite.projection_checks import (
     as_targets,
@@ -43,6 +44,18 @@ NEARLY_DEPENDENT = 1e3
 
 class NearlyDependentRows(UserWarning):
     """Rows all but repeat each other: a small disagreement of their targets moves the body far."""
+
+
+class Softness(NamedTuple):
+    """What is known of the variances of a step before anybody looks.
+
+    Attributes:
+        firmest: the smallest of a soft row, or less, square metres.
+        alike: whether x, y and z of what is asked for have the same, see `Projector.axes_alike`.
+    """
+
+    firmest: float
+    alike: bool = False
 
 
 class Projector:
@@ -93,9 +106,10 @@ class Projector:
         self.exact = torch.as_tensor(exact, device=device)
         self.pins = torch.as_tensor(rows.y[exact], dtype=dtype, device=device)
         # Block by block, so that the residual of a block is a slice and needs no gathering.
-        order = np.concatenate([self.keep[:0], *(block.T.ravel() for block in groups)])
+        laid_out = [axis_by_axis(*group) for group in zip(groups, observed, strict=True)]
+        order = np.concatenate([self.keep[:0], *(block.T.ravel() for block, _ in laid_out)])
         self.blocks, first = [], 0
-        for block, dense in zip(groups, observed, strict=True):
+        for block, dense in laid_out:
             own = slice(first, first + block.size)
             self.blocks.append(Block(dense, rows.variance[block], own, inner, device))
             first += block.size
@@ -120,7 +134,7 @@ class Projector:
         self,
         x1_hat: torch.Tensor,
         variance: torch.Tensor | None = None,
-        firmest: float | None = None,
+        known: Softness | None = None,
     ) -> torch.Tensor:
         """Move a motion, or a batch, the shortest way onto the rows.
 
@@ -128,8 +142,8 @@ class Projector:
             x1_hat: ``(..., frames, 22, 3)`` metres, in the projector's precision and on its device.
             variance: ``(m,)`` or ``(batch, m)`` square metres, instead of that of the rows:
                 0 makes a row hard, infinity leaves it out. Hard rows stay hard, whatever it says.
-            firmest: the smallest variance of a soft row, or less, of a variance that is known to be
-                0 for hard rows: then nobody looks at it again.
+            known: what is known of variances that are 0 for hard rows, so that nobody has to look
+                at them.
 
         Returns:
             The same shape. Pinned coordinates are bit-exact; gradients flow through. Where a motion
@@ -146,18 +160,19 @@ class Projector:
         if variance is not None:
             variance = check_variance(variance, self.given, len(x)).to(self.y)
             variance = variance.index_select(-1, self.order)
-            if firmest is None:
-                firmest = firmest_of(variance.masked_fill(self.hard, torch.inf))
+            if known is None:
+                known = Softness(firmest_of(variance.masked_fill(self.hard, torch.inf)))
                 variance = variance.masked_fill(self.hard, 0.0)
             variance = variance.expand(len(x), -1)
-        z = self.solve(self.y - self.A(x), variance)
+        alike = known is not None and known.alike
+        z = self.solve(self.y - self.A(x), variance, alike)
         x = self.moved(x, z)
         # Iterative refinement: what rounding left over of S z = y - A x1_hat, removed. Where hard
         # rows are single coordinates and well conditioned there is no need: they are set below.
         for _ in range(self.solves - 1 if self.refines else 0):
-            more = self.solve(self.left(x, z, variance), variance)
+            more = self.solve(self.left(x, z, variance), variance, alike)
             x, z = self.moved(x, more), z + more
-        if variance is not None and firmest is not None and firmest <= self.firm:
+        if known is not None and variance is not None and known.firmest <= self.firm:
             check_solved(self.left(x, z, variance) * (variance < torch.inf), self.firm)
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.pins.expand(len(x), -1)
@@ -181,10 +196,17 @@ class Projector:
         miss = (self.A(x) - self.y).abs()
         return float(miss[:, self.hard].max()) if self.hard.any() else 0.0
 
-    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
+    def solve(
+        self, residual: torch.Tensor, variance: torch.Tensor | None, alike: bool = False
+    ) -> torch.Tensor:
         r"""Solve :math:`(A R^{-1} A^\top + \Sigma) z = r`, block by block, for ``(batch, m)``."""
-        parts = [block.solve(residual, variance) for block in self.blocks]
+        parts = [block.solve(residual, variance, alike) for block in self.blocks]
         return parts[0] if len(parts) == 1 else torch.cat([residual[:, :0], *parts], 1)
+
+    def axes_alike(self, table: torch.Tensor) -> bool:
+        """Whether rows that differ in axis only have equal columns in a table ``(k, m)``."""
+        ordered = table[:, self.order]
+        return all(block.axes_alike(ordered) for block in self.blocks)
 
     def moved(self, x: torch.Tensor, z: torch.Tensor) -> torch.Tensor:
         r"""Add :math:`R^{-1} A^\top z`: put ``(batch, m)`` on the joints, and let it spread."""
@@ -233,92 +255,3 @@ def solves_needed(condition: float, dtype: torch.dtype) -> int:
     """
     precision = torch.finfo(dtype).eps
     return max(2, math.ceil(math.log(precision) / math.log(precision * condition**2)))
-
-
-class Block:
-    """Blocks of equal size, each coupling the rows of one frame and axis.
-
-    Args:
-        dense: ``(blocks, size, size)``, their parts of A R⁻¹ Aᵀ.
-        variance: ``(blocks, size)`` of their rows.
-        own: where their rows are: the first row of every block, then the second of every one.
-        dtype: of the residuals that come later.
-        device: where they live.
-    """
-
-    def __init__(
-        self,
-        dense: NDArray,
-        variance: NDArray,
-        own: slice,
-        dtype: torch.dtype,
-        device: str | torch.device,
-    ) -> None:
-        self.own, self.shape = own, variance.shape[::-1]
-        self.observed, self.variance = dense, variance
-        rows_first = np.moveaxis(dense, 0, -1)
-        self.dense = torch.tensor(rows_first, dtype=dtype, device=device)
-
-    @cached_property
-    def inverse(self) -> torch.Tensor:
-        """Of every block with the variance of its rows, ``(blocks, size, size)``."""
-        noise = self.variance[..., None] * np.eye(len(self.dense))
-        inverse = np.linalg.inv(self.observed + noise)
-        return torch.as_tensor(inverse, dtype=self.dense.dtype, device=self.dense.device)
-
-    def solve(self, residual: torch.Tensor, variance: torch.Tensor | None) -> torch.Tensor:
-        """Solve every block for ``(batch, m)`` residuals, ``(batch, own rows)``.
-
-        Args:
-            residual: ``(batch, m)``.
-            variance: ``(batch, m)``, infinite where a row is left out; None for that of the rows.
-        """
-        batch = len(residual)
-        r = residual[:, self.own].unflatten(1, self.shape)
-        if variance is None:
-            r = r.permute(2, 1, 0)
-            # For a single motion torch's product of matrices pays a call for each block.
-            z = (self.inverse * r.mT).sum(2, keepdim=True) if batch == 1 else self.inverse @ r
-            return z.permute(2, 1, 0).flatten(1)
-        # Rows first, then motions, then blocks: every turn of the elimination is then a product of
-        # long contiguous stretches.
-        v = variance[:, self.own].unflatten(1, self.shape).movedim(1, 0)
-        C = self.dense.unsqueeze(2).expand(-1, -1, batch, -1)
-        return eliminate(C, v, r.movedim(1, 0)).movedim(0, 1).flatten(1)
-
-
-LARGEST_IN_LOCKSTEP = 12
-"""Rows of a block up to which blocks are eliminated together; more are worth a call of LAPACK."""
-
-
-def eliminate(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -> torch.Tensor:
-    r"""Solve :math:`(C + \operatorname{diag} \sigma^2)\, z = r` for many small C at once.
-
-    Gauss and Jordan, in lockstep: the first row explains what it can of all others and goes to the
-    end. After as many turns as a block has rows they are in their old order, and what is left is z.
-    So hundreds of blocks take as many steps as one block has rows, instead of a call of LAPACK for
-    each. Being positive definite, C needs no pivoting. A row of infinite variance explains nothing
-    and gets z = 0, by the rules of arithmetic.
-
-    Args:
-        C: ``(n, n, ...)`` positive semidefinite.
-        variance: ``(n, ...)``, 0 to infinity.
-        r: ``(n, ...)``.
-    """
-    if len(C) > LARGEST_IN_LOCKSTEP:
-        return solve_one_by_one(C, variance, r)
-    system = torch.cat([C, r[:, None]], 1)
-    for own in variance:
-        first = system[0, 1:] / (system[0, 0] + own)
-        others = torch.addcmul(system[1:, 1:], system[1:, :1], first, value=-1)
-        system = torch.cat([others, first[None]])
-    return system[:, 0]
-
-
-def solve_one_by_one(C: torch.Tensor, variance: torch.Tensor, r: torch.Tensor) -> torch.Tensor:
-    """The same for large blocks, by LAPACK; rows of infinite variance are cut out."""
-    C, variance, r = C.movedim((0, 1), (-2, -1)), variance.movedim(0, -1), r.movedim(0, -1)
-    active = torch.isfinite(variance)
-    mask = active[..., :, None] & active[..., None, :]
-    S = C * mask + torch.diag_embed(torch.where(active, variance, 1.0))
-    return (torch.linalg.solve(S, r) * active).movedim(-1, 0)

@@ -30,7 +30,7 @@ def euler(
     """
     x_t = x0
     for t, t_next in itertools.pairwise(times):
-        x_t = x_t + (t_next - t) * velocity(x_t, t, text)
+        x_t = torch.add(x_t, velocity(x_t, t, text), alpha=t_next - t)
     return x_t
 
 
@@ -66,12 +66,11 @@ def multistep(velocity: Velocity, times: Sequence[float]) -> Velocity:
         nonlocal before
         if t not in following:
             raise ValueError(f"multistep: {t} is none of the times at which a step begins")
-        x1_hat = x_t + (1 - t) * velocity(x_t, t, text)
+        x1_hat = torch.add(x_t, velocity(x_t, t, text), alpha=1 - t)
         ahead = x1_hat
         if before is not None and t > times[0] and following[t] < 1:
             t_before, x1_before = before
-            slope = (x1_hat - x1_before) / (t - t_before)
-            ahead = x1_hat + lead(t, following[t]) * slope
+            ahead = torch.lerp(x1_before, x1_hat, 1 + lead(t, following[t]) / (t - t_before))
         before = t, x1_hat
         return (ahead - x_t) / (1 - t)
 

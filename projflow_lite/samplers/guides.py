@@ -161,7 +161,7 @@ class Guides:
         np.minimum.at(nearest, self.column // 3, distance)
         near = nearest.reshape(self.frames, N_JOINTS) < radius[..., None]
         frame, joint = np.divmod(self.column // 3, N_JOINTS)
-        parts = (near @ q).clip(min=1e-12)[:, frame] / q[joint]
+        parts = np.where(near, q, 0).sum(-1).clip(min=1e-12)[:, frame] / q[joint]
         r = self.r.numpy()[len(self.given) :]
         start = np.where(distance < radius, -r, np.inf)
         given = np.broadcast_to(self.given, (len(radius), len(self.given)))
@@ -170,6 +170,10 @@ class Guides:
         self.halos = [Halo(*rows) for rows in zip(*as_rows, strict=True)]
         soft = np.concatenate([self.given[self.given > 0], r * (1 / c.pi_max - 1)])
         self.firmest = float(soft.min(initial=np.inf))
+
+    def table(self) -> torch.Tensor:
+        """All that variances of rows depend on but the motion, ``(k, m + guides)``."""
+        return torch.stack([self.frame, self.r, *(row for halo in self.halos for row in halo)])
 
     def targets(self, y: NDArray) -> NDArray:
         """Targets of all rows, ``(..., m + guides)``, for targets ``(..., m)`` of the wish."""
@@ -204,14 +208,13 @@ class Guides:
     def caution(self, x1_hat: torch.Tensor) -> torch.Tensor:
         """By how much the bend of each frame divides its trust, ``(batch, frames)``, 1 or more."""
         c = self.settings
-        if self.frames < 3:
+        if self.frames < 3 or c.lambda_s == 0:
             return torch.ones_like(x1_hat[..., 0, 0])
         bend = x1_hat.flatten(2).diff(n=2, dim=1)
         s = torch.linalg.vector_norm(bend @ self.C, dim=2)  # eq. 17
         s = torch.cat([s[:, :1], s, s[:, -1:]], dim=1)
         # Where most frames rest the median is 0: those that bend are not trusted at all.
-        most = torch.inf if c.lambda_s else 0.0
-        ratio = (s / middle(s, c.form)).nan_to_num(nan=0.0, posinf=most)
+        ratio = s / middle(s, c.form).clamp(min=torch.finfo(s.dtype).tiny)
         return 1 + c.lambda_s * ratio**c.p  # the denominator of eq. 15
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from projflow_lite.constraints import Wish
 from projflow_lite.joint_metric import check_metric
-from projflow_lite.projection import Projector
+from projflow_lite.projection import Projector, Softness
 from projflow_lite.samplers.guides import Guides, GuideSettings
 from projflow_lite.skeleton import shown
 
@@ -47,13 +47,16 @@ class ProjectionStep:
         self.guides = guide if guide else None
         self.given = torch.as_tensor(rows.variance, dtype=dtype)
         self.projector = Projector(self.guides.rows if self.guides else rows, metric, dtype)
+        if self.guides:
+            alike = self.projector.axes_alike(self.guides.table())
+            self.known = Softness(self.guides.firmest, alike)
 
     def __call__(self, x1_hat: torch.Tensor, t: float) -> torch.Tensor:
         """Project ``(batch, frames, 22, 3)``, metres, as asked for at flow time `t`."""
         if not self.guides:
             return self.projector.project(x1_hat)
         variance = self.guides.variance(x1_hat, t)
-        return self.projector.project(x1_hat, variance, self.guides.firmest)
+        return self.projector.project(x1_hat, variance, self.known)
 
     def aimed_at(self, y: ArrayLike) -> ProjectionStep:
         """The same step with other targets, one set for each motion of a batch.

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from projflow_lite.constraints import Rows, Wish
 from projflow_lite.equations import influence_weights, marginal_variance
 from projflow_lite.joint_metric import check_metric
-from projflow_lite.projection import Projector
+from projflow_lite.projection import Projector, Softness
 from projflow_lite.samplers import GuideSettings, ProjectionStep
 from projflow_lite.skeleton import N_JOINTS
 
@@ -57,11 +57,11 @@ class PrintedOrder:
         self,
         x1_hat: torch.Tensor,
         variance: torch.Tensor | None = None,
-        firmest: float | None = None,
+        known: Softness | None = None,
     ) -> torch.Tensor:
         """Project ``(batch, frames, 22, 3)``, metres, as `Projector.project` does."""
         taken = x1_hat.flatten(-2).unflatten(-1, (3, N_JOINTS)).mT
-        return self.projector.project(taken, variance, firmest).mT.reshape(x1_hat.shape)
+        return self.projector.project(taken, variance, known).mT.reshape(x1_hat.shape)
 
     def aimed_at(self, y: ArrayLike) -> PrintedOrder:
         """The same rows with other targets, one set for each motion of a batch."""
@@ -93,6 +93,7 @@ class OrderAsPrinted(ProjectionStep):
             self.guides.r = torch.cat([torch.zeros(len(self.given), dtype=dtype), r])
             self.guides.share_out(influence_weights(R_J, self.guides.settings.form))
             self.guides.C = torch.as_tensor(np.kron(np.eye(3), np.linalg.cholesky(R_J))).to(dtype)
+            self.known = Softness(self.guides.firmest)  # x, y and z are no longer alike
         rows = self.guides.rows if self.guides else wish.rows(frames)
         self.projector = PrintedOrder(rows, metric, dtype)  # type: ignore[assignment]
 

@@ -10,7 +10,7 @@ import projflow_lite as pf
 from projflow_lite import equations
 from projflow_lite.joint_metric import kinematic_joint_metric
 from projflow_lite.projection import Projector
-from projflow_lite.samplers import Guides, GuideSettings
+from projflow_lite.samplers import Guides, GuideSettings, ProjectionStep
 
 FRAMES = 30
 R_J = kinematic_joint_metric()
@@ -139,6 +139,21 @@ def test_a_guided_projection_is_the_dense_formula_with_those_variances():
         np.diag(variance[0].numpy()[active]),
     )  # fmt: skip
     np.testing.assert_allclose(ours.numpy().ravel(), dense, atol=1e-9)
+
+
+@pytest.mark.parametrize("axes", ["xyz", "xy", "y"])
+@pytest.mark.parametrize("std", [0.0, 0.05])
+def test_one_elimination_for_three_axes_is_three(axes, std):
+    """With pins of whole points and with others, and where axes have keyframes of their own."""
+    random = np.random.default_rng(0)
+    three = pf.pin(["head", "left_wrist"], [2, 9], random.normal(size=(2, 2, 3)))
+    other = pf.pin("pelvis", [5, 7], random.normal(size=(2, len(axes))), axes, std=std)
+    step = ProjectionStep(three & other, 12, dtype=torch.float64)
+    x = torch.as_tensor(random.normal(size=(3, 12, 22, 3)).cumsum(1))
+    for t in (0.0, 0.5, 0.9):
+        looked_at = step.projector.project(x, step.guides.variance(x, t))
+        torch.testing.assert_close(step(x, t), looked_at, rtol=0, atol=1e-12)
+    assert step.known.alike == (axes == "xyz" or all(b.axes == 1 for b in step.projector.blocks))
 
 
 def test_every_frame_pinned_leaves_nothing_to_guide():
