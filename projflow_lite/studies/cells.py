@@ -223,12 +223,18 @@ def mean_of(parts: list[Scores]) -> Scores:
     return row
 
 
+def records_text(prior: Prior, rows: list[dict[str, Any]], **about: Any) -> str:
+    """The records of a study as JSON, a record a line; the prior that they are of comes first."""
+    known = json.dumps({"prior": fingerprint(prior)} | about)
+    lines = ",\n".join(json.dumps(row) for row in rows)
+    return f'{known[:-1]}, "rows": [\n{lines}\n]}}\n'
+
+
 def published(
     name: str, prior: Prior, rows: list[dict[str, Any]], draw: Callable[[Any, Path], Any], out: Path
 ) -> None:
     """Write the records to ``results/`` and the picture to ``pictures/`` of a folder."""
     for part in ("results", "pictures"):
         (out / part).mkdir(parents=True, exist_ok=True)
-    text = json.dumps({"prior": fingerprint(prior), "rows": rows}, indent=1)
-    (out / f"results/{name}.json").write_text(text + "\n")
+    (out / f"results/{name}.json").write_text(records_text(prior, rows))
     draw(rows, out / f"pictures/{name}.png")

@@ -6,7 +6,6 @@ and records of comparisons to ``results/``, where the book finds them.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -26,7 +25,7 @@ from projflow_lite.studies import (
     real_wishes,
     sensitivity,
 )
-from projflow_lite.studies.cells import fingerprint
+from projflow_lite.studies.cells import records_text
 
 
 class Wanted(NamedTuple):
@@ -110,8 +109,7 @@ def records(name: str, rows: Any, wanted: Wanted, prior: Prior) -> Path:
     """Write the records of a study, the prior that they are of, and whether it was a quick look."""
     path = wanted.out / "results" / f"{name}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
-    known = {"prior": fingerprint(prior), "quick": wanted.quick, "rows": rows}
-    path.write_text(json.dumps(known, indent=1) + "\n", encoding="utf-8")
+    path.write_text(records_text(prior, rows, quick=wanted.quick), encoding="utf-8")
     return path
 
 
