@@ -50,6 +50,7 @@ from projflow_lite.studies.control_ways import (
     QUICK_DNO,
     RIVALS,
     TRAINED,
+    TUNED,
     Made,
     Task,
     make,
@@ -88,12 +89,12 @@ class Protocol(NamedTuple):
     steps: int = 25
     joints: tuple[str, ...] = JOINTS
     densities: tuple[int, ...] = DENSITIES
-    rivals: tuple[Rival, ...] = RIVALS + OURS + TRAINED + ABLATIONS
+    rivals: tuple[Rival, ...] = RIVALS + OURS + TUNED + TRAINED + ABLATIONS
     edit: bool = True
     clock: bool = True
 
 
-QUICK_RIVALS = (*RIVALS[:-1], QUICK_DNO, *OURS, *TRAINED, *ABLATIONS)
+QUICK_RIVALS = (*RIVALS[:-1], QUICK_DNO, *OURS, *TUNED, *TRAINED, *ABLATIONS)
 QUICK = Protocol(32, 2, 10, ("pelvis", "left_wrist"), (5,), QUICK_RIVALS)
 """A first look: its intervals are wide, and DNO gets a tenth of its looks."""
 

@@ -27,7 +27,7 @@ LOOKS = {
     "flowdps": (ORANGE, "o", "-"), "pnp_flow": (ORANGE, "D", "--"), "flowchef": (BLUE, "D", "--"),
     "dps": (PINK, "o", "--"), "dps, endpoint": (PINK, "v", ":"), "dno": (GREY, "D", "-"),
     "metric over time": (GREEN, "o", "-"), "control branch": (RED, "D", "--"),
-    "condmdi": (RED, "v", ":"),
+    "condmdi": (RED, "v", ":"), "projflow, tuned": (RED, "^", "--"),
 }  # fmt: skip
 """Colour, mark and line of each method."""
 

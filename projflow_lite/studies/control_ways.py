@@ -56,6 +56,9 @@ RIVALS = (
 OURS = (Rival("metric over time", "projflow", (("metric", "moving"),)),)
 """ProjFlow as we would set it: see `projflow_lite.samplers.MovingMetric`."""
 
+TUNED = (Rival("projflow, tuned", "projflow", (("eta", 0.0), ("c0", 30.0))),)
+"""The paper's method with constants that `control_tuning` chose on clips of its own."""
+
 TRAINED = (
     Rival("control branch", "control_branch", model="control_branch"),
     Rival("condmdi", "condmdi", model="masked"),

@@ -24,7 +24,7 @@ from projflow_lite.studies.claims import (
     verdict,
 )
 from projflow_lite.studies.control_paper import EDIT_TABLE, SOURCES, TABLES
-from projflow_lite.studies.control_ways import EDIT, OURS, TRAINED
+from projflow_lite.studies.control_ways import EDIT, OURS, TRAINED, TUNED
 
 ERRORS = ("trajectory error", "location error", "average error")
 SHOWN = (
@@ -65,7 +65,7 @@ def of_best(rows: list[dict[str, Any]], joint: str) -> str | None:
     """Is ProjFlow's FID the best of all untrained methods, its own ablations aside?"""
     own = find(rows, joint, "projflow")
     others = [r for r in rows if r["joint"] == joint and r["keys"] == ALL and r is not own]
-    aside = ("no wish", DATA, *SOURCES, *(rival.name for rival in TRAINED + OURS))
+    aside = ("no wish", DATA, *SOURCES, *(rival.name for rival in TRAINED + OURS + TUNED))
     others = [r for r in others if r["method"] not in aside]
     if own is None or not others:
         return None
@@ -98,9 +98,19 @@ def of_cells(rows: list[dict[str, Any]], other: str, column: str = "FID") -> str
     )
 
 
-def of_ours(rows: list[dict[str, Any]]) -> str | None:
-    """What a metric over time changes, over all joints and densities."""
-    pair = [find(rows, "average", name) for name in (OURS[0].name, "projflow")]
+BESIDE = {
+    TUNED[0].name: "ProjFlow with constants chosen on other clips",
+    OURS[0].name: (
+        "A metric over time in place of metric and guides, as exact, its constants measured or "
+        "chosen on other clips"
+    ),
+}
+"""What stands beside ProjFlow as the paper sets it, in words."""
+
+
+def of_ours(rows: list[dict[str, Any]], other: str) -> str | None:
+    """What one of `BESIDE` changes, over all joints and densities."""
+    pair = [find(rows, "average", name) for name in (other, "projflow")]
     if pair[0] is None or pair[1] is None:
         return None
     said = []
@@ -109,10 +119,8 @@ def of_ours(rows: list[dict[str, Any]]) -> str | None:
         difference = difference_of(ours, usual)
         certain = "" if abs(difference.mean) > difference.half_width else " (undecided)"
         said.append(f"{column} {shown(ours)} instead of {shown(usual)}{certain}")
-    return (
-        "A metric over time in place of metric and guides, as exact, its constants measured or "
-        f"chosen on other clips: {'; '.join(said)}."
-    )
+    changed = ", ".join(f"{name} {value}" for name, value in pair[0]["options"].items())
+    return f"{BESIDE[other]} ({changed}): {'; '.join(said)}."
 
 
 def of_costs(rows: list[dict[str, Any]]) -> str | None:
@@ -141,7 +149,8 @@ def sentences(rows: list[dict[str, Any]]) -> list[str]:
     known = [sentence for sentence in claimed + edits if sentence]
     said = [of_exactness(rows), *(of_best(rows, joint) for joint in joints)]
     said += [of_cells(rows, other) for other in SOURCES]
-    said += [of_ours(rows), of_time(rows), of_costs(rows), count_of(known), *known]
+    said += [of_ours(rows, other) for other in BESIDE]
+    said += [of_time(rows), of_costs(rows), count_of(known), *known]
     return [sentence for sentence in said if sentence]
 
 
