@@ -107,6 +107,9 @@ def say_classroom(commands: argparse._SubParsersAction) -> None:
         "classroom", help="how many wrong answers the exercises catch; or lay out a course"
     )
     classroom.add_argument("--course", type=Path, help="write an nbgrader course to this folder")
+    classroom.add_argument(
+        "--chapters", type=Path, nargs="+", default=[], help="tutorial notebooks for that course"
+    )
     classroom.add_argument("--json", type=Path, help="write the numbers to this file")
     classroom.set_defaults(run=run_classroom)
 
@@ -208,8 +211,10 @@ def run_classroom(options: argparse.Namespace) -> dict:
     """Lay out a course, or count the wrong answers that the exercises catch."""
     from projflow_lite.classroom import course, mutation
 
+    if options.chapters and not options.course:
+        raise ValueError("--chapters are part of a course; say where to, with --course FOLDER")
     if options.course:
-        return {"course": str(course.create(options.course))}
+        return {"course": str(course.create(options.course, chapters=options.chapters))}
     found = mutation.run()
     print(mutation.report([mutation.Row(**row) for row in found["rows"]]))
     return found

@@ -1,15 +1,9 @@
 """A whole term with nbgrader: sheets go out, three students hand in, marks come back."""
 
-import copy
-import csv
-import os
 import re
-import subprocess
-import sys
 
-import nbformat
 import pytest
-from nbgrader.api import Gradebook
+from nbgrader_term import Term
 
 from projflow_lite.classroom import course
 
@@ -40,73 +34,14 @@ MARKS = {
 }
 
 
-class Term:
-    """A course in a folder of its own, and nbgrader with nothing of this machine's set-up."""
-
-    def __init__(self, folder):
-        self.course = course.create(folder / "course", seconds_per_cell=10)
-        home = folder / "home"
-        home.mkdir()
-        closed = "http://127.0.0.1:9"  # nobody listens there
-        self.environment = {
-            **os.environ,
-            "HOME": str(home),
-            "IPYTHONDIR": str(home / "ipython"),
-            "JUPYTER_CONFIG_DIR": str(home / "config"),
-            "JUPYTER_DATA_DIR": str(home / "data"),
-            "JUPYTER_RUNTIME_DIR": str(home / "runtime"),
-            "OMP_NUM_THREADS": "1",
-            "http_proxy": closed,
-            "https_proxy": closed,
-        }
-
-    def nbgrader(self, *words):
-        done = subprocess.run(
-            [sys.executable, "-m", "nbgrader", *words],
-            cwd=self.course,
-            env=self.environment,
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr[-3000:]
-
-    def read(self, stage, assignment):
-        path = self.course / stage / assignment / f"{SHEETS[assignment].notebook}.ipynb"
-        return nbformat.read(path, as_version=4)
-
-    def hand_in(self, student, assignment, answers, deleted=()):
-        """Fill answers into the notebook that was handed out, by the name of the cell."""
-        notebook = copy.deepcopy(self.read("release", assignment))
-        cells = {cell.metadata.get("nbgrader", {}).get("grade_id"): cell for cell in notebook.cells}
-        for name, source in answers.items():
-            cells[name].source = source
-        notebook.cells = [cell for cell in notebook.cells if cell.id not in deleted]
-        place = self.course / "submitted" / student / assignment
-        place.mkdir(parents=True)
-        nbformat.write(notebook, place / f"{SHEETS[assignment].notebook}.ipynb")
-
-    def solutions(self, assignment):
-        """The lecturer's answers, as a student would have written them."""
-        roles = {cell.name: cell.role for cell in SHEETS[assignment].cells}
-        return {
-            cell.id: re.sub(r" *### (BEGIN|END) SOLUTION\n?", "", cell.source)
-            for cell in self.read("source", assignment).cells
-            if roles[cell.id] in ("answer", "written")
-        }
-
-    def gradebook(self):
-        return Gradebook(f"sqlite:///{self.course / 'gradebook.db'}", "projflow")
-
-    def mark_by_hand(self, student, assignment, score, words):
-        key = WRITTEN[assignment], SHEETS[assignment].notebook, assignment, student
-        with self.gradebook() as book:
-            grade = book.find_grade(*key)
-            assert grade.needs_manual_grade
-            grade.manual_score, grade.needs_manual_grade = score, False
-            book.find_comment(*key).manual_comment = words
-            book.db.commit()
+def mark_by_hand(term, student, assignment, score, words):
+    key = WRITTEN[assignment], SHEETS[assignment].notebook, assignment, student
+    with term.gradebook() as book:
+        grade = book.find_grade(*key)
+        assert grade.needs_manual_grade
+        grade.manual_score, grade.needs_manual_grade = score, False
+        book.find_comment(*key).manual_comment = words
+        book.db.commit()
 
 
 @pytest.fixture(scope="module")
@@ -128,9 +63,8 @@ def term(tmp_path_factory):
     term.hand_in("cleo", "sheet1", answers, deleted=["test_mix_noise"])
     for assignment in SHEETS:
         term.nbgrader("autograde", assignment)
-        term.mark_by_hand("ada", assignment, 2, "Well done.")
-    term.mark_by_hand("ben", "sheet2", 0.5, "Show that it applies here.")
-    term.nbgrader("export", "--to", "grades.csv")
+        mark_by_hand(term, "ada", assignment, 2, "Well done.")
+    mark_by_hand(term, "ben", "sheet2", 0.5, "Show that it applies here.")
     term.nbgrader("generate_feedback", "sheet2", "--student", "ben")
     return term
 
@@ -167,8 +101,7 @@ def test_an_untouched_sheet_is_said_to_be_unwritten(term, assignment, capsys):
 
 
 def test_everybody_gets_the_marks_they_earned(term):
-    with open(term.course / "grades.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
+    rows = term.exported()
     handed_in = {
         (row["student_id"], row["assignment"]): float(row["score"])
         for row in rows
@@ -189,11 +122,7 @@ def test_everybody_gets_the_marks_they_earned(term):
     ],
 )
 def test_points_are_lost_where_the_mistakes_are_and_nowhere_else(term, student, assignment, lost):
-    with term.gradebook() as book:
-        submission = book.find_submission(assignment, student)
-        grades = [grade for notebook in submission.notebooks for grade in notebook.grades]
-        assert {grade.name for grade in grades if not grade.score} == lost
-        assert not any(grade.needs_manual_grade for grade in grades)
+    assert term.lost(student, assignment) == lost
 
 
 def test_a_cell_without_end_is_interrupted_and_the_cells_below_it_are_run(term):

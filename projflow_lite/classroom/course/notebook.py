@@ -20,10 +20,7 @@ verdict = check("{exercise}", {function})
 print(verdict)
 assert verdict, "{function} is not right yet: the lines above say what is wrong"
 ### BEGIN HIDDEN TESTS
-import numpy as np
-
-{hidden}
-assert check("{exercise}", {function}, seed={seed}), "wrong for other numbers"
+{hidden}assert check("{exercise}", {function}, seed={seed}), "wrong for other numbers"
 ### END HIDDEN TESTS"""
 
 KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
@@ -51,6 +48,24 @@ def notebook(sheet: Sheet) -> NotebookNode:
     return whole
 
 
+def check_source(exercise: str, function: str, points: int, hidden: str = "") -> str:
+    """Return the lecturer's test of one function.
+
+    Args:
+        exercise: what is checked, such as ``"projflow:7"``.
+        function: name of the student's function.
+        points: what the test is worth.
+        hidden: code of further hidden tests, with its line end.
+    """
+    return TEST.format(
+        points=f"{points} point{'s' if points > 1 else ''}",
+        exercise=exercise,
+        function=function,
+        hidden=hidden,
+        seed=HIDDEN_SEED,
+    )
+
+
 def _notebook_cell(cell: Cell) -> NotebookNode:
     """Return one cell with its metadata; the name is also the identity, so files stay the same."""
     kind = "markdown" if cell.role in ("text", "written") else "code"
@@ -67,13 +82,9 @@ def _source(cell: Cell) -> str:
         return f"### BEGIN SOLUTION\n{cell.body}\n### END SOLUTION"
     if cell.role != "test":
         return cell.body
-    return TEST.format(
-        points=f"{cell.points} point{'s' if cell.points > 1 else ''}",
-        exercise=cell.exercise,
-        function=cell.name.removeprefix("test_"),
-        hidden=cell.body,
-        seed=HIDDEN_SEED,
-    )
+    function = cell.name.removeprefix("test_")
+    hidden = f"import numpy as np\n\n{cell.body}\n"
+    return check_source(cell.exercise, function, cell.points, hidden)
 
 
 def _nbgrader(cell: Cell, kind: str) -> dict[str, Any]:
