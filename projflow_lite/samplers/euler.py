@@ -30,7 +30,7 @@ def euler(
     """
     x_t = x0
     for t, t_next in itertools.pairwise(times):
-        x_t = torch.add(x_t, velocity(x_t, t, text), alpha=t_next - t)
+        x_t = x_t + (t_next - t) * velocity(x_t, t, text)
     return x_t
 
 

@@ -130,15 +130,20 @@ def best(tried: list[Tried]) -> Tried:
 def listing(found: list[list[Tried]]) -> str:
     """Everything that was tried as text, a star at what is taken."""
     columns = ("average error", "kinetic distance", "FID", "bone error %", "worst acceleration")
-    lines = [f"{'':50s}" + "".join(f"{name:>20s}" for name in columns)]
+    width = max(len(words_of(one.rival)) for tried in found for one in tried)
+    lines = ["  ".ljust(width + 2) + "".join(f"{name:>20s}" for name in columns)]
     for tried in found:
         taken = best(tried)
         for one in tried:
-            options = ", ".join(f"{key} {value}" for key, value in one.rival.options)
             star = "*" if one is taken else " "
             cells = "".join(f"{one.scores[name]:20.4f}" for name in columns)
-            lines.append(f"{star} {one.rival.name:14s}{options:34s}{cells}")
+            lines.append(f"{star} {words_of(one.rival).ljust(width)}{cells}")
     return "\n".join(lines)
+
+
+def words_of(rival: Rival) -> str:
+    """Its name and its settings."""
+    return f"{rival.name}: {', '.join(f'{key} {value}' for key, value in rival.options)}"
 
 
 def main() -> None:
