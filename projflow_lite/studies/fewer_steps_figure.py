@@ -79,7 +79,7 @@ def draw_wish(axes: Any, rows: list[dict[str, Any]], data: dict[str, Any]) -> No
     }
     draw(axes[0], readings, "kinetic distance", data, f"{task}: noise and metric")
     draw(axes[1], readings, "worst acceleration", data, f"{task}: noise and metric")
-    draw(axes[2], solvers, "kinetic distance", data, f"{task}: solvers, default noise")
+    draw(axes[2], solvers, "kinetic distance", data, f"{task}: solvers, paper noise")
 
 
 def draw(

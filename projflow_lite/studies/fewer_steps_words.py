@@ -157,7 +157,7 @@ def sentences(rows: list[dict[str, Any]]) -> list[str]:
 
 
 def plain_of(methods: dict[tuple, list[dict[str, Any]]]) -> tuple:
-    """Euler's quadratic steps, as in all other tables, with the sampler's default noise."""
+    """Euler's quadratic steps, as in all other tables, with the paper's noise."""
     return next(method for method in methods if method[:2] == ("quadratic", "Euler"))
 
 
