@@ -78,7 +78,8 @@ class Bench(NamedTuple):
         found = {}
         for rival in rivals:
             path = self.place / rival.spelled / f"time-{self.device}.json"
-            found[rival.name] = {TIME: stored(path, partial(timed, rival, make))[TIME]}
+            timing = partial(timed, rival, make)
+            found[rival.name] = {TIME: stored(path, timing, by_first=True)[TIME]}
         return found
 
     def data_row(

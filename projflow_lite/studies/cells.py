@@ -29,6 +29,7 @@ from projflow_lite.scores import (
     pose_features,
     score_clips,
 )
+from projflow_lite.studies.shares import is_first, is_mine, take_share, wait_for
 
 
 class Features(NamedTuple):
@@ -64,8 +65,18 @@ def quality(
     return row
 
 
-def stored(path: Path, measure: Callable[[], dict[str, float]]) -> dict[str, float]:
-    """A result from its file, or measured and stored."""
+def stored(
+    path: Path, measure: Callable[[], dict[str, float]], by_first: bool = False
+) -> dict[str, float]:
+    """A result from its file; or measured and stored, by the process that it belongs to.
+
+    Args:
+        path: the file.
+        measure: what is stored.
+        by_first: whether it belongs to the first process, as times do: it is then alone.
+    """
+    if not (is_first() if by_first else is_mine(path)):
+        wait_for(path)
     if not path.exists():
         text = json.dumps(measure(), indent=1)
         write(path, lambda file: file.write(text.encode()))
@@ -130,6 +141,11 @@ ALL, DATA = "all", "held-out data"
 Scores = dict[str, float]
 
 
+def file_of(place: Path, seed: int, cell: Cell) -> Path:
+    """Where the result of a cell and seed is stored."""
+    return place / cell.path / f"seed-{seed}.json"
+
+
 def filled(
     place: Path,
     cells: Sequence[Cell],
@@ -148,10 +164,15 @@ def filled(
     """
     found: dict[Cell, list[Scores]] = {cell: [] for cell in cells}
     with tqdm(total=seeds * len(cells), disable=not progress, unit="cell") as bar:
-        for seed, cell in itertools.product(range(seeds), cells):
+
+        def take(seed: int, cell: Cell) -> dict[str, float]:
             bar.set_description(f"seed {seed}, {cell.joint}, {cell.keys}, {cell.rival.name}")
-            path = place / cell.path / f"seed-{seed}.json"
-            found[cell].append(stored(path, partial(measure, cell, seed)))
+            return stored(file_of(place, seed, cell), partial(measure, cell, seed))
+
+        every = list(itertools.product(range(seeds), cells))
+        take_share((file_of(place, *job), partial(take, *job)) for job in every)
+        for seed, cell in every:
+            found[cell].append(take(seed, cell))
             bar.update(1)
     return found
 

@@ -26,6 +26,7 @@ from projflow_lite.studies import (
     sensitivity,
 )
 from projflow_lite.studies.cells import records_text
+from projflow_lite.studies.shares import is_first
 
 
 class Wanted(NamedTuple):
@@ -94,7 +95,12 @@ def compared(name: str, study: Any, wanted: Wanted, *given: Any) -> dict[str, An
 def shown(
     name: str, study: Any, rows: Any, wanted: Wanted, prior: Prior | None = None
 ) -> dict[str, Any]:
-    """Print the table of a study, draw its picture, and keep its records if they are of a prior."""
+    """Print the table of a study, draw its picture, and keep its records if they are of a prior.
+
+    Of several processes the first one does it.
+    """
+    if not is_first():
+        return {"rows": rows}
     print(study.table(rows))
     kept = {} if prior is None else {"results": str(records(name, rows, wanted, prior))}
     if not hasattr(study, "figure"):
@@ -145,3 +151,6 @@ STUDIES: dict[str, Callable[[Wanted], dict[str, Any]]] = {
     "real-wishes": run_real_wishes,
     "sensitivity": run_sensitivity,
 }
+
+UNSHARED = ("posterior", "data-card", "contact-sheet")
+"""Studies without cells: of several processes only the first one runs them."""

@@ -136,7 +136,7 @@ def fits_of(bench: Bench, rivals: tuple[Rival, ...], progress: bool) -> dict[Riv
             continue
         measure = partial(priced, partial(in_time, bench), rival, usual, steps)
         path = bench.place / rival.spelled / f"price-{bench.device}.json"
-        price = Price(**stored(path, measure))
+        price = Price(**stored(path, measure, by_first=True))
         found[rival] = {budget: price.fit(budget) for budget in BUDGETS}
     return found
 

@@ -38,6 +38,7 @@ from projflow_lite.studies.fewer_steps_figure import figure
 from projflow_lite.studies.fewer_steps_ways import FINE, Way, all_ways, make
 from projflow_lite.studies.fewer_steps_words import COLUMNS, DATA, OFF_FLOW, sentences, table
 from projflow_lite.studies.keyframes import FRAMES
+from projflow_lite.studies.shares import is_first, take_share, wait_for
 
 __all__ = ["figure", "run", "sentences", "table"]
 
@@ -88,10 +89,15 @@ def run(
             wished = held_out(clips, FRAMES, WISHED + seed)
             fine = fine_motion(prior, wished, seed, place)
             bar.update(FINE.calls)
+            jobs = {}
             for way in filter(None, found):
-                bar.set_description(f"{way.task}, {way.solver}, {way.steps}")
+                path = place / name_of(way, seed)
                 measure = partial(measured, prior, way, wished, seed, reference, fine)
-                found[way].append(stored(place / name_of(way, seed), measure))
+                jobs[way] = path, partial(stored, path, measure)
+            take_share(jobs.values())
+            for way, (_, work) in jobs.items():
+                bar.set_description(f"{way.task}, {way.solver}, {way.steps}")
+                found[way].append(work())
                 bar.update(way.calls)
     return [record(way, values, clips) for way, values in found.items()]
 
@@ -119,6 +125,8 @@ def score(positions: NDArray, captions: list[str], reference: Features) -> dict[
 def fine_motion(prior: Prior, wished: Clips, seed: int, place: Path) -> NDArray:
     """Where many small steps lead without a wish, from the file if there is one."""
     path = place / f"fine-{seed}.npy"
+    if not is_first():
+        wait_for(path)
     if not path.exists():
         write(path, lambda file: np.save(file, make(prior, FINE, wished, seed)[0]))
     return np.load(path)

@@ -41,6 +41,7 @@ from projflow_lite.studies.gmd_ways import (
     walks,
 )
 from projflow_lite.studies.keyframes import FRAMES
+from projflow_lite.studies.shares import take_share
 
 __all__ = ["figure", "load_models", "run", "table"]
 
@@ -98,12 +99,15 @@ def run(
             found[None].append(quality(others, reference))
             wished = {"obstacle": walks(clips, WALKED + seed)}
             usual = held_out(clips, FRAMES, WISHED + seed)
+            jobs = {}
             for way in filter(None, found):
+                path, asked = place / way.name / f"seed-{seed}.json", wished.get(way.task, usual)
+                measure = partial(measured, models, way, asked, seed, reference)
+                jobs[way] = path, partial(stored, path, measure)
+            take_share(jobs.values())
+            for way, (_, work) in jobs.items():
                 bar.set_description(f"{way.task}, {way.method}")
-                measure = partial(
-                    measured, models, way, wished.get(way.task, usual), seed, reference
-                )
-                found[way].append(stored(place / way.name / f"seed-{seed}.json", measure))
+                found[way].append(work())
                 bar.update()
     return [record(way, values, clips) for way, values in found.items()]
 

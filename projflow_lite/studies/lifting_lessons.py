@@ -19,6 +19,7 @@ from torch import nn
 from data_synth import Clips, make_clips
 from projflow_lite.prior.checkpoint import read, write
 from projflow_lite.studies.lifting_pictures import Shot, draw_camera, draw_joints, line_of_sight
+from projflow_lite.studies.shares import is_first, wait_for
 
 BATCH, CLIPS = 32, 2048
 """Clips of a lesson, and how many there are in all."""
@@ -97,7 +98,12 @@ def teach(
 
 
 def kept(network: nn.Module, path: Path, learn: Callable[[nn.Module], Any]) -> None:
-    """Take what a network has learnt from its file; or let it learn, and store it."""
+    """Take what a network has learnt from its file; or let it learn, and store it.
+
+    Of several processes the first one learns.
+    """
+    if not is_first():
+        wait_for(path)
     if path.exists():
         network.load_state_dict(read(path)[0])
         network.eval().requires_grad_(False)

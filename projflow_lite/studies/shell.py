@@ -9,6 +9,7 @@ from typing import Any
 
 from projflow_lite.prior import load_prior
 from projflow_lite.studies.cells import Rival, published
+from projflow_lite.studies.shares import is_first
 
 
 def options_of(description: str, folder: Path, usual: Any) -> argparse.ArgumentParser:
@@ -73,6 +74,8 @@ def carry_out(
     """Run a comparison as asked for: print the table, and write records and picture if wanted."""
     prior = load_prior(options.prior)
     rows = run(prior, protocol, options.folder, options.device)
+    if not is_first():
+        return
     print(table(rows))
     if options.out:
         published(name, prior, rows, draw, options.out)
