@@ -106,7 +106,7 @@ def of_fit(rows: list[Row]) -> str | None:
     ]
     if not budgets(rows):
         return None
-    return f"More than a quarter over time: {', '.join(late) if late else 'no method'}."
+    return f"Longer than their time by more than a quarter: {', '.join(late) if late else 'no method'}."
 
 
 def of_near(rows: list[Row]) -> str | None:

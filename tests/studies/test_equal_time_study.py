@@ -100,7 +100,7 @@ def test_what_was_fitted_is_taken_from_its_file_and_runs(prior, tmp_path, monkey
         assert part in text
     said = equal_time.sentences(rows)
     assert said[0] == (
-        "More than a quarter over time: no wish in the time (takes 1.9 times ProjFlow's with 1 "
+        "Longer than their time by more than a quarter: no wish in the time (takes 1.9 times ProjFlow's with 1 "
         "steps), ddnm in the time (takes 1.9 times ProjFlow's with 1 steps)."
     )
     published("equal-time", prior, rows, equal_time.figure, tmp_path)
@@ -155,9 +155,9 @@ def test_who_is_near_and_who_is_late():
         "Within 5 cm of their keyframes on average, and the least time in which they are: projflow "
         "(the time), dps (the time), ddnm (the time), gmd (four times the time)."
     )
-    assert equal_time_words.of_fit(ROWS) == "More than a quarter over time: no method."
+    assert equal_time_words.of_fit(ROWS) == "Longer than their time by more than a quarter: no method."
     late = [ROWS[0], row("dno", 1, (1.0, 1.1)) | {RATIO: 3.1, COUNT: 1, "counted": "iterations"}]
     assert equal_time_words.of_fit(late) == (
-        "More than a quarter over time: dno in the time (takes 3.1 times ProjFlow's with 1 "
+        "Longer than their time by more than a quarter: dno in the time (takes 3.1 times ProjFlow's with 1 "
         "iterations)."
     )
