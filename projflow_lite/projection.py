@@ -58,6 +58,10 @@ class Softness(NamedTuple):
     alike: bool = False
 
 
+AS_GIVEN = Softness(math.inf)
+"""Of the rows' own variances, which were looked at when the projector was made."""
+
+
 class Projector:
     """Projection onto a set of rows, under a metric on the joints (ProjFlow eq. 6-8).
 
@@ -157,22 +161,23 @@ class Projector:
         check_motion(x1_hat, self.frames, self.dtype, self.y.device)
         x = x1_hat.reshape(-1, self.frames * N_JOINTS * 3).to(self.y.dtype)
         check_batch(self.y, len(x), "targets")
-        if variance is not None:
+        if variance is None:
+            known = AS_GIVEN
+        else:
             variance = check_variance(variance, self.given, len(x)).to(self.y)
             variance = variance.index_select(-1, self.order)
             if known is None:
                 known = Softness(firmest_of(variance.masked_fill(self.hard, torch.inf)))
                 variance = variance.masked_fill(self.hard, 0.0)
             variance = variance.expand(len(x), -1)
-        alike = known is not None and known.alike
-        z = self.solve(self.y - self.A(x), variance, alike)
+        z = self.solve(self.y - self.A(x), variance, known.alike)
         x = self.moved(x, z)
         # Iterative refinement: what rounding left over of S z = y - A x1_hat, removed. Where hard
         # rows are single coordinates and well conditioned there is no need: they are set below.
         for _ in range(self.solves - 1 if self.refines else 0):
-            more = self.solve(self.left(x, z, variance), variance, alike)
+            more = self.solve(self.left(x, z, variance), variance, known.alike)
             x, z = self.moved(x, more), z + more
-        if known is not None and variance is not None and known.firmest <= self.firm:
+        if variance is not None and known.firmest <= self.firm:
             check_solved(self.left(x, z, variance) * (variance < torch.inf), self.firm)
         # The exact value is known, so the last bit need not be left to arithmetic.
         exact = self.pins.expand(len(x), -1)

@@ -106,7 +106,8 @@ def of_fit(rows: list[Row]) -> str | None:
     ]
     if not budgets(rows):
         return None
-    return f"Longer than their time by more than a quarter: {', '.join(late) if late else 'no method'}."
+    who = ", ".join(late) if late else "no method"
+    return f"Longer than their time by more than a quarter: {who}."
 
 
 def of_near(rows: list[Row]) -> str | None:

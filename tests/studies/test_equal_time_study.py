@@ -155,7 +155,9 @@ def test_who_is_near_and_who_is_late():
         "Within 5 cm of their keyframes on average, and the least time in which they are: projflow "
         "(the time), dps (the time), ddnm (the time), gmd (four times the time)."
     )
-    assert equal_time_words.of_fit(ROWS) == "Longer than their time by more than a quarter: no method."
+    assert (
+        equal_time_words.of_fit(ROWS) == "Longer than their time by more than a quarter: no method."
+    )
     late = [ROWS[0], row("dno", 1, (1.0, 1.1)) | {RATIO: 3.1, COUNT: 1, "counted": "iterations"}]
     assert equal_time_words.of_fit(late) == (
         "Longer than their time by more than a quarter: dno in the time (takes 3.1 times ProjFlow's with 1 "
