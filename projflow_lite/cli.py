@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import sys
 import time
 from dataclasses import replace
 from pathlib import Path
+
+from projflow_lite.studies.shares import is_first
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -164,7 +165,6 @@ def run_sample(options: argparse.Namespace) -> dict:
 def run_reproduce(options: argparse.Namespace) -> dict:
     """Run one study."""
     from projflow_lite.studies.commands import STUDIES, UNSHARED, Wanted
-    from projflow_lite.studies.shares import is_first
 
     if options.name not in STUDIES:
         raise ValueError(f"'{options.name}' is not a study; try {', '.join(STUDIES)}")
@@ -234,7 +234,7 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("\nStopped. The same command goes on from here.", file=sys.stderr)
         return 130
-    if os.environ.get("RANK", "0") != "0":  # one of several processes: the first speaks
+    if not is_first():  # one of several processes: the first speaks
         return numbers.get("exit_code", 0)
     for name, value in numbers.items():
         if name not in ("rows", "classroom", "as_printed", "exit_code"):

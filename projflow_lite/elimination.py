@@ -9,18 +9,21 @@ import torch
 from numpy.typing import NDArray
 
 
-def axis_by_axis(block: NDArray, dense: NDArray) -> tuple[NDArray, NDArray]:
+def axis_by_axis(block: NDArray, dense: NDArray) -> tuple[NDArray, NDArray, int]:
     """Put all blocks of x before those of y before those of z, where the three are alike.
 
     Args:
         block: ``(blocks, size)`` rows, frame after frame, see `row_blocks.blocks_of_rows`.
         dense: ``(blocks, size, size)`` their parts of A R⁻¹ Aᵀ.
+
+    Returns:
+        Both in that order, and how many axes are alike: 3; or as they are, and 1.
     """
     in_threes = np.arange(len(dense) // 3 * 3).reshape(-1, 3)
     if len(dense) % 3 or not (dense[in_threes] == dense[in_threes[:, :1]]).all():
-        return block, dense
+        return block, dense, 1
     order = in_threes.T.ravel()
-    return block[order], dense[order]
+    return block[order], dense[order], 3
 
 
 class Block:
@@ -30,6 +33,7 @@ class Block:
         dense: ``(blocks, size, size)``, their parts of A R⁻¹ Aᵀ.
         variance: ``(blocks, size)`` of their rows.
         own: where their rows are: the first row of every block, then the second of every one.
+        axes: how many equal parts the blocks come in, see `axis_by_axis`.
         dtype: of the residuals that come later.
         device: where they live.
     """
@@ -39,15 +43,14 @@ class Block:
         dense: NDArray,
         variance: NDArray,
         own: slice,
+        axes: int,
         dtype: torch.dtype,
         device: str | torch.device,
     ) -> None:
-        self.own, (self.count, self.size) = own, variance.shape
+        self.own, self.axes, (self.count, self.size) = own, axes, variance.shape
         self.observed, self.variance = dense, variance
         rows_first = np.moveaxis(dense, 0, -1)
         self.dense = torch.tensor(rows_first, dtype=dtype, device=device)
-        thirds = np.array_split(dense, 3)
-        self.axes = 3 if all(np.array_equal(third, thirds[0]) for third in thirds) else 1
 
     @cached_property
     def inverse(self) -> torch.Tensor:

@@ -111,11 +111,11 @@ class Projector:
         self.pins = torch.as_tensor(rows.y[exact], dtype=dtype, device=device)
         # Block by block, so that the residual of a block is a slice and needs no gathering.
         laid_out = [axis_by_axis(*group) for group in zip(groups, observed, strict=True)]
-        order = np.concatenate([self.keep[:0], *(block.T.ravel() for block, _ in laid_out)])
+        order = np.concatenate([self.keep[:0], *(block.T.ravel() for block, _, _ in laid_out)])
         self.blocks, first = [], 0
-        for block, dense in laid_out:
+        for block, dense, axes in laid_out:
             own = slice(first, first + block.size)
-            self.blocks.append(Block(dense, rows.variance[block], own, inner, device))
+            self.blocks.append(Block(dense, rows.variance[block], own, axes, inner, device))
             first += block.size
         self.order = torch.as_tensor(order, device=device)
         self.frames = rows.A.shape[1] // (N_JOINTS * 3)

@@ -23,7 +23,7 @@ from scipy import sparse
 
 from projflow_lite.constraints import Rows, is_coordinate
 from projflow_lite.equations import influence_weights
-from projflow_lite.joint_metric import of_metric
+from projflow_lite.joint_metric import worked_out
 from projflow_lite.row_blocks import numbered
 from projflow_lite.skeleton import N_JOINTS, shown
 
@@ -131,7 +131,9 @@ class Guides:
             np.concatenate([rows.variance, ones]),
         )
         self.distance = torch.as_tensor(place.distance)
-        self.column, (covariance, _, root) = place.column, of_metric(R_J)
+        metric, self.column = np.asarray(R_J, float).tobytes(), place.column
+        q = shares(metric, self.settings.form)
+        covariance, _, root = worked_out(metric)
         r = np.diagonal(covariance)  # eq. 18
         # Every row of the wish stands in these tables too, with r = 0: its variance is given.
         frame, joint = np.divmod(place.column // 3, N_JOINTS)
@@ -140,7 +142,7 @@ class Guides:
         self.r = torch.as_tensor(np.concatenate([none, r[joint]]), dtype=dtype)
         self.C = torch.as_tensor(root, dtype=dtype)
         self.given = rows.variance
-        self.share_out(shares(np.asarray(R_J, float).tobytes(), self.settings.form))
+        self.share_out(q)
 
     def __len__(self) -> int:
         """Number of guides."""
