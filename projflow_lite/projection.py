@@ -32,7 +32,7 @@ from projflow_lite.projection_checks import (
     check_rows,
     check_solved,
     check_variance,
-    firmest_of,
+    lowest,
 )
 from projflow_lite.row_blocks import independent_rows, name_nearest, numbered
 from projflow_lite.skeleton import N_JOINTS
@@ -145,7 +145,7 @@ class Projector:
         Args:
             x1_hat: ``(..., frames, 22, 3)`` metres, in the projector's precision and on its device.
             variance: ``(m,)`` or ``(batch, m)`` square metres, instead of that of the rows:
-                0 makes a row hard, infinity leaves it out. Hard rows stay hard, whatever it says.
+                0 makes a row hard, infinity leaves it out. Hard rows stay hard.
             known: what is known of variances that are 0 for hard rows, so that nobody has to look
                 at them.
 
@@ -164,10 +164,10 @@ class Projector:
         if variance is None:
             known = AS_GIVEN
         else:
-            variance = check_variance(variance, self.given, len(x)).to(self.y)
+            variance = check_variance(variance, self.given, len(x), known is not None).to(self.y)
             variance = variance.index_select(-1, self.order)
             if known is None:
-                known = Softness(firmest_of(variance.masked_fill(self.hard, torch.inf)))
+                known = Softness(lowest(variance.masked_fill(self.hard, torch.inf)))
                 variance = variance.masked_fill(self.hard, 0.0)
             variance = variance.expand(len(x), -1)
         z = self.solve(self.y - self.A(x), variance, known.alike)

@@ -83,8 +83,10 @@ def check_batch(values: torch.Tensor, motions: int, what: str) -> None:
         raise ValueError(f"Projector: {len(values)} sets of {what} for {motions} motions")
 
 
-def check_variance(variance: torch.Tensor, rows: int, motions: int) -> torch.Tensor:
-    """Refuse variances that are not one for each row."""
+def check_variance(
+    variance: torch.Tensor, rows: int, motions: int, known: bool = False
+) -> torch.Tensor:
+    """Refuse variances that are not one for each row; unless `known`, also below 0 or NaN."""
     if not isinstance(variance, torch.Tensor):
         raise ValueError(f"Projector: variance is a torch tensor here, not {shown(variance)}")
     if variance.ndim not in (1, 2):
@@ -92,15 +94,9 @@ def check_variance(variance: torch.Tensor, rows: int, motions: int) -> torch.Ten
     if variance.shape[-1] != rows:
         raise ValueError(f"Projector: {variance.shape[-1]} variances, {rows} rows")
     check_batch(variance, motions, "variances")
-    return variance
-
-
-def firmest_of(variance: torch.Tensor) -> float:
-    """The smallest variance, or an error if it is negative or not a number."""
-    smallest = lowest(variance)
-    if not smallest >= 0:  # nor is NaN
+    if not known and not lowest(variance) >= 0:  # nor is NaN
         raise ValueError("Projector: a variance is negative or not a number")
-    return smallest
+    return variance
 
 
 def check_solved(left: torch.Tensor, tolerance: float) -> None:
